@@ -17,7 +17,7 @@ const ENDS: [&str; 2] = ["flat", "ball"];
 /// Cells of Table 1 that are counted.
 const CELLS: usize = 200;
 const METHODS: [Method; 5] = [
-    Method::Charts,
+    Method::Mixed,
     Method::General,
     Method::Planes,
     Method::Lines,

@@ -73,7 +73,7 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub only: Vec<Output>,
     /// How crossings are found. All methods give the same dexels.
-    #[arg(long, default_value_t = Method::Charts, value_parser = parsed::<Method, 5>(["charts", "general", "planes", "lines", "surface"]))]
+    #[arg(long, default_value_t = Method::Mixed, value_parser = parsed::<Method, 5>(["charts", "general", "planes", "lines", "surface"]))]
     pub method: Method,
     /// How crossings become intervals. `paper` is for comparison only: it fails where a sweep overlaps itself.
     #[arg(long, default_value_t = BoundaryOperator::Coverage, value_parser = parsed::<BoundaryOperator, 2>(["coverage", "paper"]))]

@@ -88,12 +88,12 @@ impl Harvest {
     }
 
     /// Drops the crossings since a mark that are above a height; the lines of those nearer to it than `near` are open.
-    pub fn keep_below(&mut self, mark: usize, height: f64, near: f64) {
+    pub fn keep_below(&mut self, mark: usize, height: f64, height_tolerance: f64) {
         let mut kept = mark;
         for at in mark..self.crossings.len() {
             let (line, crossing) = self.crossings[at];
             // NaN is near.
-            if !((crossing.z - height).abs() > near) {
+            if !((crossing.z - height).abs() > height_tolerance) {
                 self.open.push((line, Cause::Smallest));
             } else if crossing.z < height {
                 self.crossings[kept] = self.crossings[at];

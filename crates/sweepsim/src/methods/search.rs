@@ -37,7 +37,7 @@ pub(crate) struct Search<'a, M> {
     /// A height above which crossings are not wanted.
     pub ceiling: Option<&'a Ceiling>,
     /// Heights closer than this may be the same.
-    pub near: f64,
+    pub height_tolerance: f64,
     /// Number of the path, for sources.
     pub path: u32,
     pub monitor: &'a dyn Monitor,
@@ -81,7 +81,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             self.placed(at, SegmentEnd::Finish, space, harvest);
         }
         if let Some(ceiling) = self.ceiling {
-            harvest.keep_below(mark, ceiling.z, self.near);
+            harvest.keep_below(mark, ceiling.z, self.height_tolerance);
         }
         harvest.count(&space.solvers.take_statistics());
     }
@@ -90,9 +90,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
         let PathPart {
             segment,
-            round,
-            wheel,
-            inclined,
+            level_arc,
+            vertical_arc,
+            arc_about_axis,
             ..
         } = &self.parts[at];
         let mut collector = Collector {
@@ -102,45 +102,55 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
-        if let Some(arc) = inclined {
-            let arc = (arc, segment, translation::slack(self.size.slack), self.near);
-            translation::inclined(outline, arc, &mut collector, by_share, settled);
+        if let Some(arc) = arc_about_axis {
+            let arc = (arc, segment, translation::slack(self.size.slack), self.height_tolerance);
+            translation::sweep_arc_about_axis(outline, arc, &mut collector, by_share, settled);
             return;
         }
         let collector = (&mut collector, self.ceiling);
-        if let Some(wheel) = wheel {
-            let arc = (wheel, segment, translation::slack(self.size.slack), self.near);
-            translation::along(outline, arc, collector, by_share, settled);
+        if let Some(vertical_arc) = vertical_arc {
+            let arc = (
+                vertical_arc,
+                segment,
+                translation::slack(self.size.slack),
+                self.height_tolerance,
+            );
+            translation::sweep_vertical_arc(outline, arc, collector, by_share, settled);
             return;
         }
-        let heading = match round {
-            Some(round) => Heading::around(round, segment, self.size.slack),
+        let heading = match level_arc {
+            Some(level_arc) => Heading::around(level_arc, segment, self.size.slack),
             None => Heading::new(segment, self.size.slack),
         };
         let Some(heading) = heading else { return };
-        match round {
-            Some(round) => translation::around(outline, (&heading, round), collector, by_share, settled),
-            None => translation::envelope(outline, &heading, collector, |t| self.source(at, t), settled),
+        match level_arc {
+            Some(level_arc) => {
+                translation::sweep_level_arc(outline, (&heading, level_arc), collector, by_share, settled)
+            }
+            None => translation::sweep_straight(outline, &heading, collector, |t| self.source(at, t), settled),
         }
     }
 
     /// Settles the patches and edges that have no closed form along a move without rotation, or along an arc with which the tool turns.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart { segment, round, .. } = &self.parts[at];
+        let PathPart { segment, level_arc, .. } = &self.parts[at];
         let mut grazed = Grazed {
             segment,
-            round: round.as_ref(),
+            level_arc: level_arc.as_ref(),
             collector: &mut Collector {
                 lines: self.lines,
                 harvest,
             },
             ceiling: self.ceiling,
             slack: self.size.slack,
-            near: self.near,
+            height_tolerance: self.height_tolerance,
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
         };
-        let rings = self.outline.filter(|_| round.is_some()).map(|outline| &outline.rings);
+        let rings = self
+            .outline
+            .filter(|_| level_arc.is_some())
+            .map(|outline| &outline.rings);
         let [of_patches, of_edges] = rings.map_or([&[][..]; 2], |rings| rings.each_ref().map(|list| &list[..]));
         let patches = Elements {
             forms: &self.cutter.patches,
@@ -154,7 +164,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             done: &mut space.done.edges,
             rings: of_edges,
         };
-        let source = |t: f64| match round {
+        let source = |t: f64| match level_arc {
             // Arcs have constant speed.
             Some(_) => self.source_after(at, t),
             None => self.source(at, t),
@@ -184,7 +194,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         Searching {
             collector,
             slack: translation::slack(self.size.slack),
-            near: self.near,
+            height_tolerance: self.height_tolerance,
         }
     }
 

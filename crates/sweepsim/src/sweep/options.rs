@@ -9,10 +9,11 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// One subdivision for all lines: boxes on which the envelope system is injective. The moves of tools of revolution are solved in closed form instead, as far as
-    /// there is one, if they do not turn, and line by line if they do.
+    /// What is fastest for each move. Moves of tools of revolution are solved in closed form, as far as there is one, if they do not turn, and line by line if
+    /// they do; all else by charts: one subdivision for all lines, with boxes on which the envelope system is injective. On the command line and in
+    /// reports it is called `charts`.
     #[default]
-    Charts,
+    Mixed,
     /// Charts for all moves: the reference for the others.
     General,
     /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision.
@@ -26,7 +27,7 @@ pub enum Method {
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Charts => "charts",
+            Self::Mixed => "charts",
             Self::General => "general",
             Self::Lines => "lines",
             Self::Planes => "planes",
@@ -45,7 +46,7 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         match name {
-            "charts" => Ok(Self::Charts),
+            "charts" => Ok(Self::Mixed),
             "general" => Ok(Self::General),
             "lines" => Ok(Self::Lines),
             "planes" => Ok(Self::Planes),
@@ -76,7 +77,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             tolerance: 1e-6,
-            method: Method::Charts,
+            method: Method::Mixed,
             boundary: BoundaryOperator::Coverage,
             path_number: 0,
             tile: Self::TILE,

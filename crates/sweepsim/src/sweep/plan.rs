@@ -73,7 +73,7 @@ impl Plan {
         let whole = cutter.outline.as_ref().is_some_and(|outline| outline.complete);
         let kind = Kind {
             symmetric: tool.is_revolved(),
-            closed: whole && options.method == Method::Charts,
+            closed: whole && options.method == Method::Mixed,
         };
         let parts = path_parts::parts((path, moves), frame, kind, cutter.reach, &tolerances);
         Ok(Self {

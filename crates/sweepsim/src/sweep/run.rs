@@ -60,7 +60,7 @@ pub(crate) fn sweep_near(
     // Those of the tool cut off, by its number.
     let mut short: BTreeMap<usize, SweepJob> = BTreeMap::new();
     let mut found = Found::new(*tile);
-    let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
+    let closed = options.method == Method::Mixed && options.boundary == BoundaryOperator::Coverage;
     let length = chunk_length(options);
     for run in Runs::new((tool, plan), (boxes, members), (tile, material), (length, closed)) {
         let job = match run.short {

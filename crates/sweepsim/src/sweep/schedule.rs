@@ -113,7 +113,7 @@ impl<'a> SweepJob<'a> {
 impl SweepJob<'_> {
     /// The meridian of the tool, if closed forms are wanted.
     fn outline(&self) -> Option<&Outline> {
-        self.cutter.outline.as_ref().filter(|_| self.method == Method::Charts)
+        self.cutter.outline.as_ref().filter(|_| self.method == Method::Mixed)
     }
 
     /// Runs `work` with a workspace.
@@ -149,7 +149,7 @@ impl SweepJob<'_> {
     /// All crossings of a chunk, in an order that does not depend on the number of threads.
     pub fn harvest(&self, chunk: &[PathPart]) -> Result<Gathered, SweepError> {
         match self.method {
-            Method::Charts | Method::General => self.by::<Charts>(chunk),
+            Method::Mixed | Method::General => self.by::<Charts>(chunk),
             Method::Lines => self.by::<Lines>(chunk),
             Method::Planes => self.by::<Planes>(chunk),
             Method::Surface => self.by::<Surfaces>(chunk),
@@ -181,7 +181,7 @@ impl SweepJob<'_> {
             closed: false,
             outline: None,
             ceiling: None,
-            near: self.tolerances.same_height(),
+            height_tolerance: self.tolerances.same_height(),
             path: self.path,
             monitor: self.monitor,
         }
@@ -205,7 +205,7 @@ impl SweepJob<'_> {
                     return Harvest::default();
                 }
                 let search = Search {
-                    closed: self.method == Method::Charts,
+                    closed: self.method == Method::Mixed,
                     outline: self.outline(),
                     ceiling: self.ceiling.as_ref(),
                     ..self.search(&method, (chunk, over), &lines)
@@ -268,7 +268,7 @@ impl SweepJob<'_> {
             ..self.search(&Charts, (&parts, over), &lines)
         };
         let search = Search {
-            closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
+            closed: self.method == Method::Mixed && attempt <= IN_CLOSED_FORM,
             outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
             ..by_charts.clone()
         };

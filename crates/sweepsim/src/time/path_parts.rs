@@ -1,6 +1,6 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
-use crate::time::circles::{Inclined, Round, Wheel, WheelPart};
+use crate::time::circles::{ArcAboutAxis, LevelArc, VerticalArc, VerticalArcPart};
 use crate::time::joined::Stretch;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
@@ -13,11 +13,11 @@ use sweepsim_motion::{Course, Path, Segment, Turning};
 pub(crate) struct PathPart {
     pub segment: Segment,
     /// The same as a circle or helix about a line along the dexels, for a tool that stands along them and turns with it, as one of revolution may.
-    pub round: Option<Round>,
+    pub level_arc: Option<LevelArc>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
-    pub wheel: Option<Wheel>,
+    pub vertical_arc: Option<VerticalArc>,
     /// The same as a circle about the tool's axis, for any tool of revolution that does not stand along the dexels.
-    pub inclined: Option<Inclined>,
+    pub arc_about_axis: Option<ArcAboutAxis>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -111,9 +111,9 @@ pub(crate) fn parts(
             parts.push(PathPart {
                 joins: last == 0 && arcs && grows && segment.turns().len() == 1,
                 segment,
-                round: None,
-                wheel: None,
-                inclined: None,
+                level_arc: None,
+                vertical_arc: None,
+                arc_about_axis: None,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
@@ -141,29 +141,35 @@ pub(crate) fn parts(
             let by = [displaced(from, [last, own]), displaced(to, [own, next])];
             last = own;
             let limit = tolerances.circle_deviation();
-            let round = if carried {
+            let level_arc = if carried {
                 None
             } else {
-                Round::parts(path, to - 1 - first, frame, (&segments, symmetric, reach), (by, limit))
+                LevelArc::parts(path, to - 1 - first, frame, (&segments, symmetric, reach), (by, limit))
             };
-            let inclined = match round {
-                None if symmetric => Inclined::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit)),
+            let arc_about_axis = match level_arc {
+                None if symmetric => {
+                    ArcAboutAxis::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit))
+                }
                 _ => None,
             };
-            let wheel = match (&round, &inclined) {
-                (None, None) if symmetric => Wheel::parts(path, to - 1 - first, (frame, reach), (by, limit)),
+            let vertical_arc = match (&level_arc, &arc_about_axis) {
+                (None, None) if symmetric => VerticalArc::parts(path, to - 1 - first, (frame, reach), (by, limit)),
                 _ => None,
             };
             let number = to - 1;
-            match round {
-                Some(round) => parts.extend(with_shares(number, round, |part, round| part.round = Some(round))),
-                None if inclined.is_some() => {
-                    let inclined = inclined.unwrap_or_default();
-                    parts.extend(with_shares(number, inclined, |part, arc| part.inclined = Some(arc)));
+            match level_arc {
+                Some(level_arc) => parts.extend(with_shares(number, level_arc, |part, level_arc| {
+                    part.level_arc = Some(level_arc)
+                })),
+                None if arc_about_axis.is_some() => {
+                    let arc_about_axis = arc_about_axis.unwrap_or_default();
+                    parts.extend(with_shares(number, arc_about_axis, |part, arc| {
+                        part.arc_about_axis = Some(arc)
+                    }));
                 }
-                None if wheel.is_some() => {
-                    let wheel = wheel.into_iter().flatten();
-                    parts.extend(wheel.map(|part| on_wheel(to - 1, part)));
+                None if vertical_arc.is_some() => {
+                    let vertical_arc = vertical_arc.into_iter().flatten();
+                    parts.extend(vertical_arc.map(|part| on_vertical_arc(to - 1, part)));
                 }
                 None => {
                     let segments = segments.into_iter().map(seen).collect();
@@ -252,9 +258,9 @@ fn with_shares<C>(
     parts.into_iter().enumerate().map(move |(n, (circle, segment))| {
         let mut part = PathPart {
             segment,
-            round: None,
-            wheel: None,
-            inclined: None,
+            level_arc: None,
+            vertical_arc: None,
+            arc_about_axis: None,
             number: number as u32,
             start: (n as f64 * share) as f32,
             share: share as f32,
@@ -266,12 +272,12 @@ fn with_shares<C>(
     })
 }
 
-fn on_wheel(number: usize, part: WheelPart) -> PathPart {
+fn on_vertical_arc(number: usize, part: VerticalArcPart) -> PathPart {
     PathPart {
         segment: part.segment,
-        round: None,
-        wheel: Some(part.wheel),
-        inclined: None,
+        level_arc: None,
+        vertical_arc: Some(part.vertical_arc),
+        arc_about_axis: None,
         number: number as u32,
         start: part.start as f32,
         share: part.share as f32,
@@ -378,7 +384,7 @@ mod tests {
             before.extend(after);
             prop_assert_eq!(whole.len(), before.len());
             for (a, b) in whole.iter().zip(&before) {
-                prop_assert_eq!((a.number, a.wheel.is_some()), (b.number, b.wheel.is_some()));
+                prop_assert_eq!((a.number, a.vertical_arc.is_some()), (b.number, b.vertical_arc.is_some()));
                 prop_assert!(a.segment == b.segment);
             }
         }

@@ -109,7 +109,7 @@ impl<'a> MovingSolid<'a> {
         for (n, part) in whole.iter().enumerate() {
             // The stored times are rounded; the parts of most moves are of equal duration.
             let even = 1.0 / whole.len() as f64;
-            let [start, share] = match part.wheel {
+            let [start, share] = match part.vertical_arc {
                 Some(_) => [part.start, part.share].map(f64::from),
                 None => [n as f64 * even, even],
             };
@@ -119,9 +119,9 @@ impl<'a> MovingSolid<'a> {
                 let by = [drift * out.len() as f64, drift * (out.len() + 1) as f64];
                 out.push(PathPart {
                     segment: part.segment.part(from, to).displaced(by),
-                    round: None,
-                    wheel: None,
-                    inclined: None,
+                    level_arc: None,
+                    vertical_arc: None,
+                    arc_about_axis: None,
                     number: part.number,
                     start: (start + from * share) as f32,
                     share: ((to - from) * share) as f32,
@@ -218,7 +218,7 @@ impl<'a> MovingSolid<'a> {
         // Masks are for charts and closed forms.
         let method = match options.method {
             Method::General => Method::General,
-            _ => Method::Charts,
+            _ => Method::Mixed,
         };
         let options = options.clone().method(method);
         let mut job = self
@@ -226,7 +226,7 @@ impl<'a> MovingSolid<'a> {
             .job((self.tool, self.plan.parts.len()), grid, &options, monitor);
         job.spaces = Arc::clone(&self.spaces);
         let short = match method {
-            Method::Charts => self.plan.short.shortest(self.tool, parts, top + self.plan.gap()),
+            Method::Mixed => self.plan.short.shortest(self.tool, parts, top + self.plan.gap()),
             _ => None,
         };
         if let Some((_, short)) = short {

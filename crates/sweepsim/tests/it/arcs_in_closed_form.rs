@@ -65,7 +65,7 @@ pub fn assert_same_bytes(tool: &Tool, path: &Path) {
             .num_threads(threads)
             .build()
             .expect("threads");
-        let options = Options::new(TOLERANCE).method(Method::Charts);
+        let options = Options::new(TOLERANCE).method(Method::Mixed);
         pool.install(|| {
             sweep(tool, path, &grid([81, 80]), &options, &())
                 .expect("a sweep")
@@ -121,7 +121,7 @@ pub fn check_boxes(tools: impl IntoIterator<Item = Tool>, path: &Path) {
             assert!(swept.statistics.unresolved.is_empty());
             swept.statistics.boxes
         };
-        let [closed, charts] = [Method::Charts, Method::General].map(boxes);
+        let [closed, charts] = [Method::Mixed, Method::General].map(boxes);
         assert!(50 * closed < charts, "{closed} of {charts}");
     }
 }

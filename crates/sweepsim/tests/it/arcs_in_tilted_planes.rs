@@ -273,7 +273,7 @@ fn hardly_a_box() {
     );
     for tool in [Tool::flat(3.0, 10.0), Tool::ball(3.0, 10.0), Tool::bull(3.0, 0.8, 10.0)] {
         let tool = tool.unwrap();
-        let [closed, charts] = [Method::Charts, Method::General].map(|method| {
+        let [closed, charts] = [Method::Mixed, Method::General].map(|method| {
             let swept = sweep(
                 &tool,
                 &path,

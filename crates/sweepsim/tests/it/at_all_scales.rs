@@ -42,7 +42,7 @@ fn a_bottom_that_stops_beside_a_torus() {
             pose([2.0, 0.9, 0.0], leaning(axis_change)),
         ];
         let path = through(poses, Law::Slerp);
-        for method in [Method::General, Method::Charts, Method::Lines] {
+        for method in [Method::General, Method::Mixed, Method::Lines] {
             let options = Options::default().method(method);
             let found = sweep(&tool, &path, &around([0.0137, -0.0211]), &options, &()).unwrap();
             let unresolved = found.statistics.unresolved;

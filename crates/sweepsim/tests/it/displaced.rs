@@ -42,7 +42,7 @@ fn without_slivers(list: &[Interval], tolerance: f64) -> Vec<Interval> {
 pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
     let on =
         |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
-    let [closed, charts] = [Method::Charts, Method::General].map(|method| on(grid, method));
+    let [closed, charts] = [Method::Mixed, Method::General].map(|method| on(grid, method));
     for found in [&closed, &charts] {
         prop_assert!(found.statistics.unresolved.is_empty(), "{name}: {:?}", found.statistics);
     }

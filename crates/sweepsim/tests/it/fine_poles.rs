@@ -48,7 +48,7 @@ fn dear_at_fine_tolerances(
                         found.statistics.unresolved.len(),
                     );
                     let apart =
-                        difference(&found.volume, &swept(*d, 1e-6, Method::Charts).1.volume, 10.0, 0.0).along_lines;
+                        difference(&found.volume, &swept(*d, 1e-6, Method::Mixed).1.volume, 10.0, 0.0).along_lines;
                     let line = format!(
                         "{tolerance:e}, {method}, {name}, {what}, {d:e}: {ratio:.2} of {generic}, {again} again, {open} open, {apart:e}"
                     );
@@ -80,7 +80,7 @@ fn poles_as_flat_as_a_cubic_cost_little_by_default() {
     const DEAREST: f64 = 10.0;
     let distances = [1e-9, 1e-12, 0.0];
     let of_tool = |(name, tool): &(&str, Tool)| {
-        dear_at_fine_tolerances((name, tool), &[Method::Charts], &over_poles(), &distances, DEAREST)
+        dear_at_fine_tolerances((name, tool), &[Method::Mixed], &over_poles(), &distances, DEAREST)
     };
     let wrong: Vec<String> = flat_poles().iter().flat_map(of_tool).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -108,7 +108,7 @@ fn cheap_on_curves(methods: &[Method], distances: &[f64]) {
 
 #[test]
 fn so_they_do_on_curves() {
-    cheap_on_curves(&[Method::Charts], &[1e-9]);
+    cheap_on_curves(&[Method::Mixed], &[1e-9]);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn so_they_do_anywhere() {
                         again <= 1 && open == 0,
                         "{name}, {what}, {d:e} at {tolerance:e}: {again} again, {open} open"
                     );
-                    work(Method::Charts, &found, &grid)
+                    work(Method::Mixed, &found, &grid)
                 };
                 // Motions that have no exact form are cut into more parts.
                 let (usual, fine) = (boxes(1e-6), boxes(1e-8));

@@ -324,7 +324,7 @@ fn poles_that_pass_over_lines() {
         ("along another", another(0.0), another(0.03)),
     ];
     for (name, tips, neighbour) in ways {
-        const METHODS: [Method; 4] = [Method::General, Method::Charts, Method::Planes, Method::Lines];
+        const METHODS: [Method; 4] = [Method::General, Method::Mixed, Method::Planes, Method::Lines];
         let [generic, found] =
             [neighbour, tips].map(|tips| METHODS.map(|method| boxes_and_dexels(tips, method, TOLERANCE)));
         let (_, own) = &found[0];
@@ -339,7 +339,7 @@ fn poles_that_pass_over_lines() {
             }
         }
         for tolerance in [1e-3, 1e-8] {
-            boxes_and_dexels(tips, Method::Charts, tolerance);
+            boxes_and_dexels(tips, Method::Mixed, tolerance);
         }
     }
 }
@@ -350,7 +350,7 @@ fn flat_ends_at_fine_tolerances() {
     let tool = bud();
     let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid");
     let moves = carried(&[[-4.0, 0.137, 0.0], [4.0, 0.137, 0.0]], [0.0; 3]);
-    for method in [Method::General, Method::Charts] {
+    for method in [Method::General, Method::Mixed] {
         let [coarse, fine] = [1e-6, 1e-9].map(|tolerance| {
             let done = sweep(&tool, &moves, &grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
             assert!(done.statistics.unresolved.is_empty() && done.statistics.repaired == 0);

@@ -53,9 +53,9 @@ proptest! {
         let (name, tool, _) = tools().swap_remove(kind);
         let axis = [lean[0], lean[1], 1.0];
         let tips = divided(&corners, &pieces, rests);
-        let found = cut(&tool, &path(&tips, axis), Method::Charts);
+        let found = cut(&tool, &path(&tips, axis), Method::Mixed);
         prop_assert!(found.statistics.unresolved.is_empty(), "{}: {:?}", name, found.statistics);
-        for (tips, method) in [(&tips, Method::General), (&corners, Method::Charts)] {
+        for (tips, method) in [(&tips, Method::General), (&corners, Method::Mixed)] {
             let other = cut(&tool, &path(tips, axis), method);
             for line in 0..found.remaining.grid().len() {
                 // Intervals shorter than the tolerance may be missing or extra.
@@ -73,7 +73,7 @@ proptest! {
     ) {
         let radius = 2.5;
         let tips = divided(&corners, &pieces, rests);
-        let found = cut(&Tool::ball(radius, 30.0).unwrap(), &path(&tips, UP), Method::Charts);
+        let found = cut(&Tool::ball(radius, 30.0).unwrap(), &path(&tips, UP), Method::Mixed);
         let grid = *found.remaining.grid();
         let mut counted = 0;
         for line in 0..grid.len() {

@@ -16,7 +16,7 @@ pub const GENERIC: f64 = 0.23;
 pub const MOST: f64 = 3.0;
 pub const METHODS: [Method; 5] = [
     Method::General,
-    Method::Charts,
+    Method::Mixed,
     Method::Surface,
     Method::Planes,
     Method::Lines,
@@ -250,7 +250,7 @@ pub fn cost(method: Method, tool: &Tool, (path, grid): &(Path, Grid)) -> Statist
 
 /// The work of a sweep, in boxes. By default, a line in closed form takes as long as a box that holds only one (1.3 µs), and counts as one.
 pub fn work(method: Method, statistics: &Statistics, grid: &Grid) -> f64 {
-    let lines = if method == Method::Charts { grid.len() } else { 0 };
+    let lines = if method == Method::Mixed { grid.len() } else { 0 };
     statistics.boxes as f64 + lines as f64
 }
 
@@ -267,7 +267,7 @@ pub fn is_cheap(
         let input = family(*d);
         let found = cost(method, tool, &input);
         // In closed form, a line may be too close to an end of a curve: it is displaced, and counts as it would otherwise.
-        let again = if method == Method::Charts { 0 } else { found.repaired };
+        let again = if method == Method::Mixed { 0 } else { found.repaired };
         let trouble = again + found.unresolved.len();
         (work(method, &found, &input.1) / generic, trouble)
     };
@@ -325,7 +325,7 @@ fn almost_upright_tools_remove_what_the_general_search_says() {
         for (name, tool) in tools() {
             for exponent in 5..=17 {
                 let (path, grid) = family(0.7 * 0.1_f64.powi(exponent));
-                let found = [Method::Charts, Method::General].map(|method| {
+                let found = [Method::Mixed, Method::General].map(|method| {
                     let options = Options::new(1e-6).method(method);
                     sweep(&tool, &path, &grid, &options, &()).expect("a sweep")
                 });

@@ -128,7 +128,7 @@ fn weights_of_flat_faces_cost_nothing() {
     for tips in &moves {
         for path in [[0.0; 3], [0.0, 0.0, 0.4]].map(|turn| carried(tips, turn)) {
             for grid in frames().map(|frame| grid.in_frame(frame)) {
-                for method in [Method::Charts, Method::General] {
+                for method in [Method::Mixed, Method::General] {
                     for tolerance in [1e-4, 1e-6, 1e-9] {
                         as_cheap(&tools, &path, &grid, &Options::new(tolerance).method(method), 2);
                     }
@@ -152,7 +152,7 @@ fn weights_of_turned_faces_cost_nothing() {
     ];
     // Planes are cut in the parameters, of which places on a rational face are not linear functions.
     let methods = [
-        (Method::Charts, 2),
+        (Method::Mixed, 2),
         (Method::General, 2),
         (Method::Lines, 2),
         (Method::Planes, 3),

@@ -11,7 +11,7 @@ use sweepsim_motion::{Apt, Path, Pose, Tool};
 
 const METHODS: [Method; 5] = [
     Method::General,
-    Method::Charts,
+    Method::Mixed,
     Method::Planes,
     Method::Lines,
     Method::Surface,

@@ -184,7 +184,7 @@ proptest! {
         let grid = grid([29, 31]);
         let over = Vector3::new(grid.x(line[0]), grid.y(line[1]) + beside, 0.0) - place;
         let moves = carried(&[over - before * way, over + (before + 2.0) * way].map(Into::into), turn);
-        let [own, other] = [Method::Charts, Method::General].map(|method| {
+        let [own, other] = [Method::Mixed, Method::General].map(|method| {
             let options = Options::new(TOLERANCE).method(method);
             sweep(&tool, &moves, &grid, &options, &()).expect("a sweep").statistics
         });

@@ -55,7 +55,7 @@ proptest! {
         let split = seed.len() / 2;
         let second = paths(&seed[split..]);
         let cuts = [Cut::new(&tool, &path), Cut::new(&tool, &second)];
-        let method = [Method::Charts, Method::Lines, Method::Planes][method];
+        let method = [Method::Mixed, Method::Lines, Method::Planes][method];
         let options = Options::new(TOLERANCE).method(method).tile(13);
         let mut grid = Grid::new([-11.0, -8.0], [11.0, 8.0], [44, 32]).unwrap();
         if framed {
@@ -104,7 +104,7 @@ fn columns_without_material_are_left_out_by_every_method() {
             .unwrap()
             .remaining
     };
-    let charts = run(Method::Charts);
+    let charts = run(Method::Mixed);
     assert!(stock.volume() - charts.volume() > 10.0);
     for method in [Method::Planes, Method::Lines, Method::Surface, Method::General] {
         assert!((run(method).volume() - charts.volume()).abs() < 1e-3, "{method}");

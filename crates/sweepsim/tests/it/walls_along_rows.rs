@@ -40,7 +40,7 @@ fn lines_in_a_wall_are_beside_it_at_every_pose() {
                 let options = Options::new(TOLERANCE).method(method);
                 sweep(tool, &path, &grid, &options, &()).expect("a sweep")
             };
-            let closed = swept(Method::Charts);
+            let closed = swept(Method::Mixed);
             assert_eq!(
                 (closed.statistics.repaired, closed.statistics.unresolved.len()),
                 (0, 0),

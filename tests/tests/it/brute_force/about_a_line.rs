@@ -62,8 +62,8 @@ fn arcs_and_helices_about_a_dexel_line() {
             let grid = Grid::new([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], [7, 7]).expect("a grid");
             let profile = tool.profile().expect("a solid of revolution");
             let check = || {
-                let charts = swept_along(tool, &path, &grid, Method::Charts)?;
-                let tally = judge_sweep(&charts, profile, &motion, &grid, Method::Charts)?;
+                let charts = swept_along(tool, &path, &grid, Method::Mixed)?;
+                let tally = judge_sweep(&charts, profile, &motion, &grid, Method::Mixed)?;
                 if tally.covered < 10 || tally.repaired > 0 {
                     return Err(format!("{tally:?}"));
                 }

@@ -69,9 +69,9 @@ fn circle_segment_cutters_along_motions_of_every_kind() {
             let grid = grid(m, &named.path);
             let profile = tool.profile().expect("a solid of revolution");
             let check = || {
-                let charts = swept_along(tool, &named.path, &grid, Method::Charts)?;
+                let charts = swept_along(tool, &named.path, &grid, Method::Mixed)?;
                 let lines = swept_along(tool, &named.path, &grid, Method::Lines)?;
-                let tally = judge_sweep(&charts, profile, &named.motion, &grid, Method::Charts)?;
+                let tally = judge_sweep(&charts, profile, &named.motion, &grid, Method::Mixed)?;
                 same_sweeps(profile, &named.motion, &grid, &charts, &lines)?;
                 let enough = tally.covered > 10;
                 enough.then_some(()).ok_or(format!("{tally:?}"))

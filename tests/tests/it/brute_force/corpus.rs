@@ -228,8 +228,8 @@ fn all_methods_on_all_named_sweeps() {
     let cases = sample("named sweeps", &cases, 60);
     let check = |(name, case): &(String, Case)| -> Result<Tally, String> {
         let grid = case.grid();
-        let tally = judge(case, Method::Charts).map_err(|error| format!("{name}: {error}"))?;
-        let auto = swept(case, &case.poses, &grid, Method::Charts)?;
+        let tally = judge(case, Method::Mixed).map_err(|error| format!("{name}: {error}"))?;
+        let auto = swept(case, &case.poses, &grid, Method::Mixed)?;
         for method in [Method::General, Method::Lines, Method::Planes, Method::Surface] {
             swept(case, &case.poses, &grid, method)
                 .and_then(|other| same_volume(case, &grid, &auto, &other))
@@ -313,7 +313,7 @@ fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
             window: window(),
         };
         // Brute force agrees with the count.
-        let tally = judge(&case, Method::Charts).expect(name);
+        let tally = judge(&case, Method::Mixed).expect(name);
         assert!(tally.covered > 40, "{name}: {}", tally.covered);
         let (path, grid) = (Path::new(case.poses.clone()).expect("a path"), case.grid());
         let volume = |boundary| {

@@ -10,7 +10,7 @@ use sweepsim::Method;
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 fn charts(case: &Case) -> Result<Tally, String> {
-    judge(case, Method::Charts)
+    judge(case, Method::Mixed)
 }
 
 fn assert_met(tally: &Tally) {

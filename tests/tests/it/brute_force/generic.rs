@@ -38,7 +38,7 @@ fn five_axis_moves() {
             poses: vec![pose(from, a), pose(to, b)],
             window,
         });
-    assert_clean(&for_all(24, cases, |case| judge(case, Method::Charts)));
+    assert_clean(&for_all(24, cases, |case| judge(case, Method::Mixed)));
 }
 
 /// A line through the hollow of a tilted tool meets pilot, air and body: a gap, as long as the move is too small to fill it.
@@ -61,7 +61,7 @@ fn small_five_axis_moves_of_a_concave_tool() {
                 window,
             }
         });
-    let tally = for_all(10, cases, |case| judge(case, Method::Charts));
+    let tally = for_all(10, cases, |case| judge(case, Method::Mixed));
     assert_clean(&tally);
     assert!(tally.split > 15, "some lines must have gaps: {tally:?}");
 }
@@ -74,7 +74,7 @@ fn translations_of_a_tilted_tool() {
             poses: vec![pose(from, a), pose(to, a)],
             window,
         });
-    assert_clean(&for_all(16, cases, |case| judge(case, Method::Charts)));
+    assert_clean(&for_all(16, cases, |case| judge(case, Method::Mixed)));
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn paths_of_many_moves() {
         poses: poses.into_iter().map(|(tip, axis)| pose(tip, axis)).collect(),
         window,
     });
-    assert_clean(&for_all(8, cases, |case| judge(case, Method::Charts)));
+    assert_clean(&for_all(8, cases, |case| judge(case, Method::Mixed)));
 }
 
 #[test]

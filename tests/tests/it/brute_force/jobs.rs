@@ -66,8 +66,8 @@ fn the_motion_of_a_job_is_that_of_its_splines() {
     let grid = Grid::new([-4.31, -4.42], [4.38, 4.29], [11, 11]).expect("a grid");
     for (name, tool) in tools() {
         let profile = tool.profile().expect("a solid of revolution");
-        let charts = swept_along(&tool, &path, &grid, Method::Charts).expect(name);
-        let tally = judge_sweep(&charts, profile, &motion, &grid, Method::Charts);
+        let charts = swept_along(&tool, &path, &grid, Method::Mixed).expect(name);
+        let tally = judge_sweep(&charts, profile, &motion, &grid, Method::Mixed);
         let tally = tally.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(tally.covered > 30, "{name}: {tally:?}");
         let lines = swept_along(&tool, &path, &grid, Method::Lines).expect(name);

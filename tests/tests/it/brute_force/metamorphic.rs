@@ -38,7 +38,7 @@ fn assert_same(tally: &Tally) {
 fn charts_and_lines_agree() {
     let tally = for_all(5, five_axis(), |case| {
         let grid = case.grid();
-        let one = swept(case, &case.poses, &grid, Method::Charts)?;
+        let one = swept(case, &case.poses, &grid, Method::Mixed)?;
         let other = swept(case, &case.poses, &grid, Method::Lines)?;
         same_volume(case, &grid, &one, &other)
     });
@@ -55,8 +55,8 @@ fn a_path_backwards_sweeps_the_same() {
     let tally = for_all(8, cases, |case| {
         let grid = case.grid();
         let backwards: Vec<Pose> = case.poses.iter().rev().copied().collect();
-        let one = swept(case, &case.poses, &grid, Method::Charts)?;
-        let other = swept(case, &backwards, &grid, Method::Charts)?;
+        let one = swept(case, &case.poses, &grid, Method::Mixed)?;
+        let other = swept(case, &backwards, &grid, Method::Mixed)?;
         same_volume(case, &grid, &one, &other)
     });
     assert_same(&tally);
@@ -77,8 +77,8 @@ fn a_move_cut_in_two_sweeps_the_same() {
         let middle = Motion::new(&case.poses).at(0, 0.37);
         let mut cut = case.poses.clone();
         cut.insert(1, pose(middle.tip.into(), middle.axis.into()));
-        let one = swept(case, &case.poses, &grid, Method::Charts)?;
-        let other = swept(case, &cut, &grid, Method::Charts)?;
+        let one = swept(case, &case.poses, &grid, Method::Mixed)?;
+        let other = swept(case, &cut, &grid, Method::Mixed)?;
         same_volume(case, &grid, &one, &other)
     });
     assert_same(&tally);
@@ -98,8 +98,8 @@ fn a_right_angle_about_z_turns_the_volume() {
             .iter()
             .map(|p| pose(quarter(Vector3::from(p.tip())), quarter(Vector3::from(p.axis()))))
             .collect();
-        let one = swept(case, &case.poses, &grid, Method::Charts)?;
-        let mut other = swept(case, &turned, &turned_grid, Method::Charts)?;
+        let one = swept(case, &case.poses, &grid, Method::Mixed)?;
+        let mut other = swept(case, &turned, &turned_grid, Method::Mixed)?;
         // Turned back, the second volume lies on the first grid.
         let mut back = one.volume.clone();
         for index in 0..grid.len() {
@@ -123,10 +123,10 @@ fn a_path_is_the_union_of_its_moves() {
     });
     let tally = for_all(6, cases, |case| {
         let grid = case.grid();
-        let whole = swept(case, &case.poses, &grid, Method::Charts)?;
-        let mut parts = swept(case, &case.poses[..2], &grid, Method::Charts)?;
+        let whole = swept(case, &case.poses, &grid, Method::Mixed)?;
+        let mut parts = swept(case, &case.poses[..2], &grid, Method::Mixed)?;
         for pair in case.poses.windows(2).skip(1) {
-            let part = swept(case, pair, &grid, Method::Charts)?;
+            let part = swept(case, pair, &grid, Method::Mixed)?;
             parts.volume.unite_all(&part.volume).expect("the same grid");
         }
         same_volume(case, &grid, &whole, &parts)
@@ -147,6 +147,6 @@ fn any_turn_about_z_is_as_good() {
         }
         case
     });
-    let tally = for_all(4, cases, |case| judge(case, Method::Charts));
+    let tally = for_all(4, cases, |case| judge(case, Method::Mixed));
     assert!(tally.covered * 5 > tally.lines, "{tally:?}");
 }

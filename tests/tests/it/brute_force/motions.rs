@@ -15,8 +15,8 @@ use sweepsim_tests::oracle::Motion;
 fn judged(name: &str, tool: &Tool, named: &Named, grid: &Grid, all: bool) -> Result<Tally, String> {
     let told = |error: String| format!("{name}: {}: {error}", named.name);
     let profile = tool.profile().expect("a solid of revolution");
-    let charts = swept_along(tool, &named.path, grid, Method::Charts).map_err(told)?;
-    let tally = judge_sweep(&charts, profile, &named.motion, grid, Method::Charts).map_err(told)?;
+    let charts = swept_along(tool, &named.path, grid, Method::Mixed).map_err(told)?;
+    let tally = judge_sweep(&charts, profile, &named.motion, grid, Method::Mixed).map_err(told)?;
     // All methods only for some tools, since they take long where the degree in time is high.
     let methods: &[Method] = if all {
         &[Method::Lines, Method::Planes, Method::Surface]
@@ -71,14 +71,14 @@ fn the_laws_agree_where_they_must() {
     let motion = Motion::new(&poses);
     let slerp = Path::new(poses.clone()).expect("a path");
     let grid = grid(1, &slerp);
-    let one = swept_along(tool, &slerp, &grid, Method::Charts).expect("a sweep");
+    let one = swept_along(tool, &slerp, &grid, Method::Mixed).expect("a sweep");
     for law in [
         Law::ConstantSpeed,
         Law::Rotary(RotaryTable::Ac),
         Law::Rotary(RotaryTable::Bc),
     ] {
         let path = Path::with_law(poses.clone(), law).expect("a path");
-        let other = swept_along(tool, &path, &grid, Method::Charts).expect("a sweep");
+        let other = swept_along(tool, &path, &grid, Method::Mixed).expect("a sweep");
         let tally = same_sweeps(profile, &motion, &grid, &one, &other).expect("the same");
         assert!(tally.covered > 20, "{tally:?}");
     }
@@ -113,10 +113,10 @@ fn a_spline_motion_of_an_exact_slerp_gives_the_same_dexels() {
     let slerp = Path::new(vec![whole(from, tips[0]), whole(to, tips[1])]).expect("a path");
     let grid = grid(1, &slerp);
     for (name, tool) in tools() {
-        let expected = swept_along(&tool, &slerp, &grid, Method::Charts).expect("a sweep");
+        let expected = swept_along(&tool, &slerp, &grid, Method::Mixed).expect("a sweep");
         let mut compared = 0;
         for motion in [&quaternions, &matrices] {
-            let found = swept_along(&tool, &Path::along(motion.clone()), &grid, Method::Charts).expect("a sweep");
+            let found = swept_along(&tool, &Path::along(motion.clone()), &grid, Method::Mixed).expect("a sweep");
             for index in 0..grid.len() {
                 let (i, j) = grid.place(index);
                 let ends = |sweep: &sweepsim::Sweep| -> Vec<f64> {
@@ -159,7 +159,7 @@ fn more_turns_sweep_the_same() {
         1,
     );
     let grid = grid(1, &once.path);
-    let sweep = |named: &Named| swept_along(tool, &named.path, &grid, Method::Charts).expect("a sweep");
+    let sweep = |named: &Named| swept_along(tool, &named.path, &grid, Method::Mixed).expect("a sweep");
     let profile = tool.profile().expect("a solid of revolution");
     let tally = same_sweeps(profile, &once.motion, &grid, &sweep(&circle), &sweep(&once)).expect("the same");
     assert!(tally.covered > 20, "{tally:?}");

@@ -262,7 +262,7 @@ impl Case {
 
     fn methods(&self) -> Result<Tally, String> {
         let path = self.drawn.path();
-        let one = self.swept(&path, &self.grid, Method::Charts)?;
+        let one = self.swept(&path, &self.grid, Method::Mixed)?;
         let mut tally = Tally::default();
         for method in [Method::Lines, Method::Planes, Method::Surface] {
             let other = self.swept(&path, &self.grid, method)?;
@@ -272,7 +272,7 @@ impl Case {
     }
 
     fn relations(&self) -> Result<Tally, String> {
-        let charts = |path: &Path, grid: &Grid| self.swept(path, grid, Method::Charts);
+        let charts = |path: &Path, grid: &Grid| self.swept(path, grid, Method::Mixed);
         let one = charts(&self.drawn.path(), &self.grid)?;
         let told = |what: &'static str| move |error: String| format!("{what}: {error}");
         let other = charts(&self.drawn.reversed().path(), &self.grid)?;
@@ -316,7 +316,7 @@ fn back(
 /// A tool sweeps the union of what its parts sweep.
 fn union((tools, case): &([Tool; 3], Case)) -> Result<Tally, String> {
     let path = case.drawn.path();
-    let [whole, body, neck] = [0, 1, 2].map(|k| swept_along(&tools[k], &path, &case.grid, Method::Charts));
+    let [whole, body, neck] = [0, 1, 2].map(|k| swept_along(&tools[k], &path, &case.grid, Method::Mixed));
     let (whole, mut parts) = (whole?, body?);
     parts.volume.unite_all(&neck?.volume).expect("the same grid");
     let profile = tools[0].profile().expect("a solid of revolution");

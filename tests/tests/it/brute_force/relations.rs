@@ -26,7 +26,7 @@ fn related(relate: impl Fn(&Named) -> Option<Path> + Sync, least: usize) {
             for (name, tool) in &tools {
                 let told = |error: String| format!("{name}, {}: {error}", named.name);
                 let grid = grid(1, &named.path);
-                let [one, other] = [&named.path, &other].map(|path| swept_along(tool, path, &grid, Method::Charts));
+                let [one, other] = [&named.path, &other].map(|path| swept_along(tool, path, &grid, Method::Mixed));
                 let profile = tool.profile().expect("a solid of revolution");
                 let tally = same_sweeps(
                     profile,
@@ -155,8 +155,8 @@ fn a_right_angle_about_z_turns_the_volume() {
         let grid = grid(1, &named.path);
         let (min, max, cells) = (grid.min(), grid.max(), grid.cells());
         let turned_grid = Grid::new([-max[1], min[0]], [-min[1], max[0]], [cells[1], cells[0]]).expect("a grid");
-        let one = swept_along(tool, &named.path, &grid, Method::Charts).expect("a sweep");
-        let mut other = swept_along(tool, &path, &turned_grid, Method::Charts).expect("a sweep");
+        let one = swept_along(tool, &named.path, &grid, Method::Mixed).expect("a sweep");
+        let mut other = swept_along(tool, &path, &turned_grid, Method::Mixed).expect("a sweep");
         let mut back = one.volume.clone();
         for index in 0..grid.len() {
             let (i, j) = grid.place(index);
@@ -190,7 +190,7 @@ fn a_union_of_tools_sweeps_the_union() {
     let profile = whole.profile().expect("a solid of revolution");
     for named in motions().iter().step_by(2) {
         let grid = grid(1, &named.path);
-        let sweep = |tool: &Tool| swept_along(tool, &named.path, &grid, Method::Charts).expect("a sweep");
+        let sweep = |tool: &Tool| swept_along(tool, &named.path, &grid, Method::Mixed).expect("a sweep");
         let (one, mut parts) = (sweep(&whole), sweep(&ball));
         parts.volume.unite_all(&sweep(&stick).volume).expect("the same grid");
         let tally = same_sweeps(profile, &named.motion, &grid, &one, &parts).expect(&named.name);
@@ -232,7 +232,7 @@ fn volumes_of_simple_sweeps_are_those_of_the_closed_forms() {
             let cells = 240;
             let (low, high) = ([-4.0, -4.5], [8.0, 5.0]);
             let grid = Grid::new(low, high, [cells, cells]).expect("a grid");
-            let found = swept_along(&tool, &path, &grid, Method::Charts)
+            let found = swept_along(&tool, &path, &grid, Method::Mixed)
                 .expect("a sweep")
                 .volume
                 .volume();
@@ -258,7 +258,7 @@ fn a_level_circle_leaves_a_disk() {
     let arc = TipArc::between([round, 0.0, 0.0], [round, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], 1).expect("an arc");
     let path = Path::with_moves(vec![at, at], vec![Move::arc(arc)]).expect("a path");
     let grid = Grid::new([-4.03, -4.01], [4.0, 4.02], [41, 41]).expect("a grid");
-    let sweep = swept_along(&tool, &path, &grid, Method::Charts).expect("a sweep");
+    let sweep = swept_along(&tool, &path, &grid, Method::Mixed).expect("a sweep");
     let motion = Motion::of_moves(&[at, at], &[Move::arc(arc)]);
     assert!(motion.arcs().len() >= 8);
     let mut covered = 0;

@@ -32,7 +32,7 @@ fn here() -> Result<(), String> {
         let cutter = cutter(name)?;
         for which in 0..2 {
             let evaluation = evaluation(&cutter, which)?;
-            for method in [Method::Charts, Method::General] {
+            for method in [Method::Mixed, Method::General] {
                 for (cells, wanted) in CELLS {
                     let entry = cutter.entry(which, cells)?;
                     let options = Options::new(1e-6).method(method);

@@ -31,12 +31,15 @@ pub(crate) struct Ceiling {
 impl Ceiling {
     /// The lowest one for these moves, if there is any. `top`: the highest material.
     pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
-        let forwards = |part: &PathPart| part.wheel.is_none_or(|wheel| wheel.goes_forwards());
+        let forwards = |part: &PathPart| {
+            part.vertical_arc
+                .is_none_or(|vertical_arc| vertical_arc.goes_forwards())
+        };
         if !outline.complete || !parts.iter().all(|part| stands(part) && forwards(part)) {
             return None;
         }
-        let own = |part: &PathPart| match part.wheel {
-            Some(wheel) => wheel.heights(),
+        let own = |part: &PathPart| match part.vertical_arc {
+            Some(vertical_arc) => vertical_arc.heights(),
             None => part.segment.tips().map(|tip| tip[2]),
         };
         let tips = || parts.iter().flat_map(own);
@@ -64,10 +67,12 @@ impl Ceiling {
                 == 1;
             let rate = (piece.to[0] - piece.from[0]) / (to - from);
             // Along an arc the disc has to be always the same.
-            let round = parts.iter().filter(|part| part.round.is_some());
-            let rises = round.map(|part| part.segment.travel()[2]);
-            let wheels = parts.iter().filter_map(|part| part.wheel.map(|wheel| wheel.heights()));
-            let mut rises = rises.chain(wheels.map(|[low, high]| high - low));
+            let level_arc = parts.iter().filter(|part| part.level_arc.is_some());
+            let rises = level_arc.map(|part| part.segment.travel()[2]);
+            let vertical = parts
+                .iter()
+                .filter_map(|part| part.vertical_arc.map(|arc| arc.heights()));
+            let mut rises = rises.chain(vertical.map(|[low, high]| high - low));
             let steady = rises.all(|rise| (rate * rise).abs() < STEADY * reach);
             if alone && steady && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
                 best = Some(Self {
@@ -82,10 +87,10 @@ impl Ceiling {
 
     /// The disc along an arc.
     fn around(&self, part: &PathPart, slack: f64) -> Option<Around> {
-        let round = part.round?;
+        let level_arc = part.level_arc?;
         let [a, b] = part.segment.tips().map(|tip| self.disc(tip).radius);
         Some(Around {
-            round,
+            arc: level_arc,
             radius: a,
             doubt: 4.0 * slack + (b - a).abs(),
         })
@@ -241,7 +246,7 @@ pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines:
     let around: Vec<Around> = parts.iter().filter_map(|part| ceiling.around(part, slack)).collect();
     let moves: Vec<Capsule> = parts
         .iter()
-        .filter(|part| part.round.is_none())
+        .filter(|part| part.level_arc.is_none())
         .map(|part| {
             let [a, b] = tips(part);
             Capsule::new(a, b)

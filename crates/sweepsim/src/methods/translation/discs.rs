@@ -2,13 +2,13 @@
 
 use super::Collector;
 use super::rows::numbers;
-use crate::time::circles::Round;
+use crate::time::circles::LevelArc;
 use std::f64::consts::PI;
 
 /// A disc along an arc.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
-    pub round: Round,
+    pub arc: LevelArc,
     pub radius: f64,
     /// How far its boundary may be off.
     pub doubt: f64,
@@ -17,10 +17,10 @@ pub(super) struct Around {
 impl Around {
     /// The extent of all discs along an axis.
     pub fn extent(&self, axis: usize) -> [f64; 2] {
-        let round = &self.round;
+        let arc = &self.arc;
         let offset = axis as f64 * 0.5 * PI;
-        let start = round.from[1].atan2(round.from[0]) - offset;
-        let ends = [start.min(start + round.angle), start.max(start + round.angle)];
+        let start = arc.from[1].atan2(arc.from[0]) - offset;
+        let ends = [start.min(start + arc.angle), start.max(start + arc.angle)];
         let mut range = [ends[0].cos().min(ends[1].cos()), ends[0].cos().max(ends[1].cos())];
         for (k, whole) in [(1, 0.0), (0, PI)] {
             let turns = |angle: f64| ((angle - whole) / (2.0 * PI)).floor();
@@ -28,10 +28,10 @@ impl Around {
                 range[k] = if k == 1 { 1.0 } else { -1.0 };
             }
         }
-        let centre = round.centre[axis];
+        let centre = arc.centre[axis];
         [
-            centre + round.radius * range[0] - self.radius,
-            centre + round.radius * range[1] + self.radius,
+            centre + arc.radius * range[0] - self.radius,
+            centre + arc.radius * range[1] + self.radius,
         ]
     }
 
@@ -39,23 +39,22 @@ impl Around {
     ///
     /// The centre of the disc is near enough while it is within an angle `δ` of the point's direction.
     fn count(&self, [x, y]: [f64; 2]) -> Option<i32> {
-        let (round, radius) = (&self.round, self.radius);
-        let [dx, dy] = [x - round.centre[0], y - round.centre[1]];
+        let (arc, radius) = (&self.arc, self.radius);
+        let [dx, dy] = [x - arc.centre[0], y - arc.centre[1]];
         let distance = dx.hypot(dy);
         let near = |a: f64, b: f64| !((a - b).abs() > self.doubt);
         let end = |share: f64| {
-            let [ox, oy] = round.out(share);
-            (dx - round.radius * ox).hypot(dy - round.radius * oy)
+            let [ox, oy] = arc.out(share);
+            (dx - arc.radius * ox).hypot(dy - arc.radius * oy)
         };
-        if near(distance, round.radius + radius)
-            || near(distance, (round.radius - radius).abs())
+        if near(distance, arc.radius + radius)
+            || near(distance, (arc.radius - radius).abs())
             || near(end(0.0), radius)
             || near(end(1.0), radius)
         {
             return None;
         }
-        let cosine =
-            (round.radius * round.radius + distance * distance - radius * radius) / (2.0 * round.radius * distance);
+        let cosine = (arc.radius * arc.radius + distance * distance - radius * radius) / (2.0 * arc.radius * distance);
         if cosine >= 1.0 {
             return Some(0);
         }
@@ -64,9 +63,9 @@ impl Around {
             return Some(1);
         }
         let width = cosine.acos();
-        let [fx, fy] = round.from;
-        let own = (round.side() * (dy * fx - dx * fy)).atan2(dx * fx + dy * fy);
-        let meets = |turn: f64| own + turn - width <= round.angle.abs() && own + turn + width >= 0.0;
+        let [fx, fy] = arc.from;
+        let own = (arc.side() * (dy * fx - dx * fy)).atan2(dx * fx + dy * fy);
+        let meets = |turn: f64| own + turn - width <= arc.angle.abs() && own + turn + width >= 0.0;
         Some(
             [-2.0 * PI, 0.0, 2.0 * PI]
                 .map(|turn| i32::from(meets(turn)))

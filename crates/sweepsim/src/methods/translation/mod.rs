@@ -8,27 +8,27 @@
 //! Every decision (which curve, which time, which sign) is taken only beyond its rounding error; a line for which one is closer is left open, and
 //! solved by the general method.
 
-mod bend;
+mod arcs_about_axis;
+mod at_rest;
 mod ceiling;
 mod curves;
 mod discs;
 mod grazing;
-mod inclined;
-mod rest;
+mod level_arcs;
 mod rows;
+mod straight;
 mod stretches;
-mod strip;
-mod wheel;
+mod vertical_arcs;
 
-pub(crate) use bend::around;
+pub(crate) use arcs_about_axis::sweep_arc_about_axis;
+pub(crate) use at_rest::{Neighbour, leaning, placements};
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
 pub(crate) use grazing::{Elements, Grazed, Grazing, Resting};
-pub(crate) use inclined::inclined;
-pub(crate) use rest::{Neighbour, leaning, placements};
+pub(crate) use level_arcs::sweep_level_arc;
 pub(crate) use rows::numbers;
-pub(crate) use strip::envelope;
-pub(crate) use wheel::along;
+pub(crate) use straight::sweep_straight;
+pub(crate) use vertical_arcs::sweep_vertical_arc;
 
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;

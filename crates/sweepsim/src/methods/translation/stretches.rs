@@ -129,15 +129,15 @@ impl Stretch {
                 out,
             } => {
                 let h = height - centre[1];
-                let room = (radius - h) * (radius + h);
-                if !(room > 512.0 * slack * (radius + slack)) {
+                let half_chord_sq = (radius - h) * (radius + h);
+                if !(half_chord_sq > 512.0 * slack * (radius + slack)) {
                     return None;
                 }
-                let wide = room.sqrt();
+                let wide = half_chord_sq.sqrt();
                 Some(Ring {
                     radius: centre[0] + side * wide,
                     rate: h.abs() / wide,
-                    turn: radius * radius / (wide * room),
+                    turn: radius * radius / (wide * half_chord_sq),
                     normal: [out * side * wide / radius, out * h / radius],
                 })
             }

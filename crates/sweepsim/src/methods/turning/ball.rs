@@ -113,23 +113,23 @@ impl Shell for Ball {
     #[inline]
     fn meet(&self, at: &Centre, [x, y]: [f64; 2]) -> Meeting {
         let place = [x - at.place.x, y - at.place.y];
-        let room = self.radius * self.radius - (place[0] * place[0] + place[1] * place[1]);
-        if room > 0.0 {
-            let half = room.sqrt();
+        let half_chord_sq = self.radius * self.radius - (place[0] * place[0] + place[1] * place[1]);
+        if half_chord_sq > 0.0 {
+            let half = half_chord_sq.sqrt();
             let (level, steep) = (place[0] * at.rate.x + place[1] * at.rate.y, half * at.rate.z);
             Meeting {
-                room,
+                half_chord_sq,
                 half,
                 place,
                 g: [level - steep, level + steep],
             }
         } else {
-            Meeting::beside(room, place)
+            Meeting::beside(half_chord_sq, place)
         }
     }
 
     fn passage(&self, limits: &BallLimits, [a, b]: [&Meeting; 2], length: f64) -> Passage {
-        match (a.room > 0.0, b.room > 0.0) {
+        match (a.half_chord_sq > 0.0, b.half_chord_sq > 0.0) {
             // The squared distance from the line is convex.
             (true, true) => Passage::Inside,
             (true, false) => Passage::Leaves,
@@ -160,12 +160,12 @@ impl Shell for Ball {
         };
         let (dx, dy) = (seen(0, x), seen(1, y));
         // As far as rounding may move a root.
-        let room = sub([self.radius * self.radius; 2], add(square(dx), square(dy)));
-        let room = wider(room, self.radius * limits.pad);
-        if room[1] < 0.0 {
+        let half_chord_sq = sub([self.radius * self.radius; 2], add(square(dx), square(dy)));
+        let half_chord_sq = wider(half_chord_sq, self.radius * limits.pad);
+        if half_chord_sq[1] < 0.0 {
             return [Sign::Absent; 2];
         }
-        let half = square_root(room);
+        let half = square_root(half_chord_sq);
         let change = limits.bow * length;
         let rate = |k: usize| between(from.rate[k], to.rate[k], change);
         let level = add(mul(dx, rate(0)), mul(dy, rate(1)));

@@ -118,8 +118,8 @@ impl Cylinder {
         }
         let delta = shared(delta, [-r, r]);
         // As far as rounding may move a root.
-        let room = wider(sub([r * r; 2], square(delta)), r * limits.pad);
-        let half = square_root(room);
+        let half_chord_sq = wider(sub([r * r; 2], square(delta)), r * limits.pad);
+        let half = square_root(half_chord_sq);
         let alpha = if sheet == 0 { [-half[1], -half[0]] } else { half };
         let zeta = divided(add(q, mul(limits.rise, alpha)), limits.lean);
         (zeta[1] >= self.ends[0] - limits.pad && zeta[0] <= self.ends[1] + limits.pad).then_some([alpha, delta, zeta])
@@ -183,9 +183,9 @@ impl Shell for Cylinder {
     #[inline]
     fn meet(&self, at: &Lean, line: [f64; 2]) -> Meeting {
         let [q, delta] = at.place(line);
-        let room = (self.radius - delta) * (self.radius + delta);
-        if room > 0.0 {
-            let half = room.sqrt();
+        let half_chord_sq = (self.radius - delta) * (self.radius + delta);
+        if half_chord_sq > 0.0 {
+            let half = half_chord_sq.sqrt();
             let lift = at.tilt[1] * half;
             let below = (q - lift) * at.inverse;
             let above = (q + lift) * at.inverse;
@@ -193,13 +193,13 @@ impl Shell for Cylinder {
                 alpha * (at.travel[0] + at.rate[0] * zeta) + delta * (at.travel[1] + at.rate[1] * zeta)
             };
             Meeting {
-                room,
+                half_chord_sq,
                 half,
                 place: [q, delta],
                 g: [g(-half, below), g(half, above)],
             }
         } else {
-            Meeting::beside(room, [q, delta])
+            Meeting::beside(half_chord_sq, [q, delta])
         }
     }
 
@@ -209,7 +209,7 @@ impl Shell for Cylinder {
         // Its derivative is within four sags of the difference.
         let monotone = (to - from).abs() > 4.0 * sag;
         let r = self.radius;
-        match (a.room > 0.0, b.room > 0.0) {
+        match (a.half_chord_sq > 0.0, b.half_chord_sq > 0.0) {
             (true, true) if monotone || from.abs().max(to.abs()) + sag < r => Passage::Inside,
             (true, false) if monotone => Passage::Leaves,
             (false, true) if monotone => Passage::Enters,

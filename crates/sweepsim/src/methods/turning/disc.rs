@@ -217,7 +217,9 @@ impl Disc {
                     return None;
                 };
                 // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
-                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= searching.near) {
+                if inside
+                    && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= searching.height_tolerance)
+                {
                     return None;
                 }
                 let [x, y] = [0, 1].map(|k| placed.rate[k] - placed.rate.z * placed.axis[k] * placed.inverse);

@@ -77,7 +77,7 @@ pub(crate) struct Searching<'a, 'b> {
     /// The rounding error of coordinates.
     pub slack: f64,
     /// Heights may be off by this much.
-    pub near: f64,
+    pub height_tolerance: f64,
 }
 
 /// A surface of the tool that is solved here.
@@ -186,7 +186,7 @@ fn cylinder_along(
 ) {
     let most = most_sag(searching, cylinder.radius);
     // Heights of points are off by the rounding error over the lean.
-    let least = (searching.slack / searching.near).clamp(UPRIGHT, STEEP);
+    let least = (searching.slack / searching.height_tolerance).clamp(UPRIGHT, STEEP);
     settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
         let lean = span.bounds.lean;

@@ -46,7 +46,7 @@ impl Resting<'_> {
         searching: &mut Searching,
     ) {
         let own = shell.meet(pose, line);
-        if own.room <= 0.0 {
+        if own.half_chord_sq <= 0.0 {
             return;
         }
         // The sign of `g` seen from a side, and whether it is certain.

@@ -291,7 +291,7 @@ impl<'a> RimSearch<'a> {
                 }
                 let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
                 let rest = turned * turned * (sample.rise.abs() + fast.abs()) * step.abs();
-                if !(alike || turned <= TURNED && 2.0 * rest <= searching.near) {
+                if !(alike || turned <= TURNED && 2.0 * rest <= searching.height_tolerance) {
                     return None;
                 }
                 let height = self.rim.height;

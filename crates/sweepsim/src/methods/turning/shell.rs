@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Meeting {
     /// The square of `half`; the line is beside the surface if it is not positive.
-    pub room: f64,
+    pub half_chord_sq: f64,
     /// Half of what is between the sheets, in the measure of the surface.
     pub half: f64,
     pub place: [f64; 2],
@@ -25,9 +25,9 @@ pub(super) struct Meeting {
 }
 
 impl Meeting {
-    pub fn beside(room: f64, place: [f64; 2]) -> Self {
+    pub fn beside(half_chord_sq: f64, place: [f64; 2]) -> Self {
         Self {
-            room,
+            half_chord_sq,
             place,
             ..Self::default()
         }

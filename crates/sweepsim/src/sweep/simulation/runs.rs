@@ -94,7 +94,9 @@ impl<'a> Runs<'a> {
     fn trimmed(&self, at: usize) -> Option<(PathPart, [bool; 2])> {
         let part = &self.plan.parts[at];
         let ends = || part.segment.tips().map(|tip| tip[2]);
-        let [from, to] = part.wheel.map_or_else(ends, |wheel| wheel.heights());
+        let [from, to] = part
+            .vertical_arc
+            .map_or_else(ends, |vertical_arc| vertical_arc.heights());
         let whole = Some((part.clone(), [false; 2]));
         if !stands(part) || (from <= self.over && to <= self.over) {
             return whole;
@@ -102,7 +104,7 @@ impl<'a> Runs<'a> {
         if from > self.over && to > self.over {
             return None;
         }
-        if part.round.is_some() || part.wheel.is_some() {
+        if part.level_arc.is_some() || part.vertical_arc.is_some() {
             return whole;
         }
         let t = (self.over - from) / (to - from);
@@ -114,9 +116,9 @@ impl<'a> Runs<'a> {
         let span = [range[0] as f32, (range[1] - range[0]) as f32];
         let short = PathPart {
             segment: part.segment.part(range[0], range[1]),
-            round: None,
-            wheel: None,
-            inclined: None,
+            level_arc: None,
+            vertical_arc: None,
+            arc_about_axis: None,
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],

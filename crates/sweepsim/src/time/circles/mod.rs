@@ -1,9 +1,9 @@
 //! Arcs of the tip that are circles to the last digit, for closed forms.
 
-mod inclined;
-mod round;
-mod wheel;
+mod arc_about_axis;
+mod level_arc;
+mod vertical_arc;
 
-pub(crate) use inclined::Inclined;
-pub(crate) use round::Round;
-pub(crate) use wheel::{Wheel, WheelPart};
+pub(crate) use arc_about_axis::ArcAboutAxis;
+pub(crate) use level_arc::LevelArc;
+pub(crate) use vertical_arc::{VerticalArc, VerticalArcPart};

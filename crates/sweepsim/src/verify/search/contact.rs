@@ -76,9 +76,9 @@ impl Arena<'_> {
     ) -> Result<Lines, SweepError> {
         let moved = |part: &PathPart| PathPart {
             segment: part.segment.moved(&Matrix3::identity(), shift),
-            round: part.round.map(|round| round.moved([shift[0], shift[1]])),
-            wheel: part.wheel.map(|wheel| wheel.moved(shift)),
-            inclined: part.inclined.map(|arc| arc.moved(shift)),
+            level_arc: part.level_arc.map(|level_arc| level_arc.moved([shift[0], shift[1]])),
+            vertical_arc: part.vertical_arc.map(|vertical_arc| vertical_arc.moved(shift)),
+            arc_about_axis: part.arc_about_axis.map(|arc| arc.moved(shift)),
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

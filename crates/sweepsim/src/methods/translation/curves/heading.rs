@@ -1,7 +1,7 @@
 //! The frame of a move: along it, across it, and along the dexels.
 
 use super::Local;
-use crate::time::circles::Round;
+use crate::time::circles::LevelArc;
 use crate::time::path_parts::PathPart;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
@@ -43,10 +43,13 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
 /// Whether the tool stands exactly along the dexels all the time, and does not turn but with an arc.
 pub(crate) fn stands(part: &PathPart) -> bool {
     let PathPart {
-        segment, round, wheel, ..
+        segment,
+        level_arc,
+        vertical_arc,
+        ..
     } = part;
     let still = segment.turns().len() == 1 && is_upright(&segment.turns()[0]);
-    round.is_some() || still && (wheel.is_some() || segment.is_arc())
+    level_arc.is_some() || still && (vertical_arc.is_some() || segment.is_arc())
 }
 
 /// The rounding error of the coordinates that closed forms compute, products of a few rounded numbers, from the one that all systems allow for: a
@@ -96,8 +99,8 @@ impl Heading {
     }
 
     /// The tangent of an arc, as long as the arc. `None` if it is too short.
-    pub fn around(round: &Round, segment: &Segment, rounding: f64) -> Option<Self> {
-        let (slack, length) = (slack(rounding), round.length());
+    pub fn around(level_arc: &LevelArc, segment: &Segment, rounding: f64) -> Option<Self> {
+        let (slack, length) = (slack(rounding), level_arc.length());
         let rise = segment.travel()[2];
         (length > SHORTEST * slack && rise.is_finite()).then(|| Self {
             tip: segment.tips()[0],

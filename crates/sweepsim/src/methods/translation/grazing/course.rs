@@ -8,7 +8,7 @@ use super::tree::widened;
 use crate::algebra::ranges::{Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::time::circles::Round;
+use crate::time::circles::LevelArc;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -218,36 +218,36 @@ impl Course {
     ///
     /// In the frame that turns with the arc, the velocity of a tool of revolution is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point
     /// out of its surface: `g` is that of the translation. Other tools keep that turn.
-    pub fn around(round: &Round, segment: &Segment, slack: f64) -> Option<Self> {
-        let (radius, angle) = (round.radius, round.angle.abs());
+    pub fn around(level_arc: &LevelArc, segment: &Segment, slack: f64) -> Option<Self> {
+        let (radius, angle) = (level_arc.radius, level_arc.angle.abs());
         let [first, last] = segment.tips();
         let climb = segment.travel()[2];
-        if !(round.length() > SHORTEST * slack && round.length().hypot(climb).is_finite()) {
+        if !(level_arc.length() > SHORTEST * slack && level_arc.length().hypot(climb).is_finite()) {
             return None;
         }
-        let reversed = round.angle < 0.0;
+        let reversed = level_arc.angle < 0.0;
         let (from, rise, out) = if reversed {
-            (last[2], -climb, round.out(1.0))
+            (last[2], -climb, level_arc.out(1.0))
         } else {
-            (first[2], climb, round.from)
+            (first[2], climb, level_arc.from)
         };
-        let ahead = unit(match round.tool_x {
+        let ahead = unit(match level_arc.tool_x {
             None => START,
             // The tangent to the left, as seen along the tool's x and y: the same at both ends.
             Some([x, y]) => {
-                let [a, b] = round.from;
+                let [a, b] = level_arc.from;
                 [a * y - b * x, a * x + b * y]
             }
         });
         let (turn, centre) = (Matrix3::identity(), Centre { radius, spread: 0.0 });
         let way = [ahead[0] * radius * angle, ahead[1] * radius * angle, rise];
         let ring = Ring {
-            centre: round.centre,
+            centre: level_arc.centre,
             radius,
             from: out,
             slack,
         };
-        let own = Directions::new(&turn, ahead, unit(way), 0.0).around(centre, round.tool_x.is_some());
+        let own = Directions::new(&turn, ahead, unit(way), 0.0).around(centre, level_arc.tool_x.is_some());
         Some(Self {
             from,
             rise,

@@ -32,7 +32,7 @@ pub(super) struct Lines<'a, 'b, S, C> {
     pub collector: &'a mut Collector<'b>,
     pub source: &'a S,
     /// Heights this close are the same.
-    pub near: f64,
+    pub height_tolerance: f64,
     /// The longest last step of Newton's method, in parts of the patch.
     pub last: f64,
     pub evaluations: u64,
@@ -272,7 +272,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         let steepness = course.rise.abs() / course.length;
         let scale = course.ground.scale(found.p);
         let off = (z - found.place[1]).abs() + (scale + steepness) * (q - found.place[0]).abs();
-        off <= LESS * self.lines.near
+        off <= LESS * self.lines.height_tolerance
     }
 
     /// Settles a line near a knot without an evaluation, if all decisions are certain.

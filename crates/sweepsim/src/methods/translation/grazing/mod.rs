@@ -21,7 +21,7 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
 use crate::methods::harvest::unit;
-use crate::time::circles::Round;
+use crate::time::circles::LevelArc;
 use at_rest::{Finds, Search, Still, TooMany};
 use course::{Course, Directions, Key};
 use face::{Curve, Face};
@@ -75,13 +75,13 @@ pub(crate) struct Elements<'a> {
 pub(crate) struct Grazed<'a, 'b> {
     pub segment: &'a Segment,
     /// The same as an arc with which a tool of revolution turns.
-    pub round: Option<&'a Round>,
+    pub level_arc: Option<&'a LevelArc>,
     pub collector: &'a mut Collector<'b>,
     pub ceiling: Option<&'a Ceiling>,
     /// The rounding error of coordinates.
     pub slack: f64,
     /// Heights this close are the same.
-    pub near: f64,
+    pub height_tolerance: f64,
     /// The longest last step of Newton's method.
     pub last: f64,
     pub monitor: &'a dyn Monitor,
@@ -136,8 +136,8 @@ impl Grazing {
         if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
             return;
         }
-        let course = match grazed.round {
-            Some(round) => Course::around(round, grazed.segment, grazed.slack),
+        let course = match grazed.level_arc {
+            Some(level_arc) => Course::around(level_arc, grazed.segment, grazed.slack),
             None => Course::new(grazed.segment, grazed.slack),
         };
         let Some(course) = course else { return };
@@ -221,7 +221,7 @@ impl Grazed<'_, '_> {
                 course,
                 collector: &mut *self.collector,
                 source,
-                near: self.near,
+                height_tolerance: self.height_tolerance,
                 last: self.last,
                 evaluations: 0,
                 middle: 0.0,

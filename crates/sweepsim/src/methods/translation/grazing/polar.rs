@@ -164,7 +164,7 @@ mod tests {
     use crate::algebra::table::position;
     use crate::cutter::cells::Cells;
     use crate::cutter::patch_forms::PatchForms;
-    use crate::time::circles::Round;
+    use crate::time::circles::LevelArc;
     use nalgebra::Vector3;
     use proptest::prelude::*;
     use sweepsim_motion::{Pose, Profile, ProfileSegment, Segment, Tool};
@@ -190,10 +190,10 @@ mod tests {
         ) {
             let radius = logarithm.exp();
             let angle = if left { 1.2 } else { -1.2 };
-            let round = Round { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle, tool_x: stands.map(|angle: f64| [angle.cos(), angle.sin()]) };
+            let level_arc = LevelArc { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle, tool_x: stands.map(|angle: f64| [angle.cos(), angle.sin()]) };
             let pose = |z: f64| Pose::new([0.0, 0.0, z], [0.0, 0.0, 1.0]).unwrap();
             let segment = Segment::between(&pose(0.0), &pose(slope * radius)).remove(0);
-            let course = Course::around(&round, &segment, 1e-13).unwrap();
+            let course = Course::around(&level_arc, &segment, 1e-13).unwrap();
             let Some((_, family)) = course.family() else { return Ok(()) };
             let forms = PatchForms::of_patches(tools()[tool].patches());
             let element = &forms[number % forms.len()];

@@ -178,7 +178,7 @@ mod tests {
     use super::super::course::Course;
     use super::super::tree::Tree;
     use super::*;
-    use crate::time::circles::Round;
+    use crate::time::circles::LevelArc;
     use proptest::prelude::*;
     use sweepsim_motion::{Patch, Pose, Segment, Tool};
     use sweepsim_spline::Bernstein;
@@ -229,8 +229,8 @@ mod tests {
                 let segment = Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
                 let Some(radius) = radius else { return Course::new(&segment, 1e-13) };
                 let [x, y, _] = way;
-                let round = Round { centre: [0.3, -0.2], radius: radius.exp() + 0.1 * way[2], from: [0.6, 0.8], angle: x, tool_x: Some([x / x.hypot(y), y / x.hypot(y)]) };
-                Course::around(&round, &segment, 1e-13)
+                let level_arc = LevelArc { centre: [0.3, -0.2], radius: radius.exp() + 0.1 * way[2], from: [0.6, 0.8], angle: x, tool_x: Some([x / x.hypot(y), y / x.hypot(y)]) };
+                Course::around(&level_arc, &segment, 1e-13)
             };
             let (Some(course), Some(other)) = (course(way), course([0, 1, 2].map(|k: usize| way[k] + shift[k]))) else { return Ok(()) };
             let Some((key, family)) = course.family() else { return Ok(()) };

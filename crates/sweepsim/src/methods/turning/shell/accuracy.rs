@@ -14,7 +14,7 @@ fn found(
     outline: &Outline,
     segment: &Segment,
     lines: &Lattice,
-    near: f64,
+    height_tolerance: f64,
 ) -> (Vec<(u32, Crossing)>, Vec<u32>) {
     let mut harvest = Harvest::default();
     let mut collector = Collector {
@@ -24,7 +24,7 @@ fn found(
     let mut searching = Searching {
         collector: &mut collector,
         slack: 1e-14,
-        near,
+        height_tolerance,
     };
     let mut done = (vec![false; tool.patches().len()], vec![false; tool.edges().len()]);
     let source = |t: f64| Source::Cut {
@@ -44,7 +44,7 @@ fn found(
 /// Heights are as accurate as the search is told, normals to 1e-4, on surfaces and on edges.
 #[test]
 fn one_step_is_enough() {
-    let near = 1e-9;
+    let height_tolerance = 1e-9;
     let tools = [
         Tool::ball(3.0, 15.0).unwrap(),
         Tool::flat(3.0, 15.0).unwrap(),
@@ -74,7 +74,8 @@ fn one_step_is_enough() {
         let tool = &tools[(number / 3 % 3) as usize];
         let outline = Outline::new(tool).unwrap();
         for segment in Segment::between(&poses[0], &poses[1]) {
-            let [own, other] = [near, 1e-14].map(|near| found(tool, &outline, &segment, &lines, near));
+            let [own, other] = [height_tolerance, 1e-14]
+                .map(|height_tolerance| found(tool, &outline, &segment, &lines, height_tolerance));
             let skipped = |line: u32| own.1.contains(&line) || other.1.contains(&line);
             let kept = |all: &[(u32, Crossing)]| -> Vec<(u32, Crossing)> {
                 all.iter().filter(|(line, _)| !skipped(*line)).copied().collect()
@@ -90,6 +91,6 @@ fn one_step_is_enough() {
             compared[(number % 3) as usize] += own.len();
         }
     }
-    assert!(worst[0] <= near && worst[1] <= 1e-4, "{worst:?}");
+    assert!(worst[0] <= height_tolerance && worst[1] <= 1e-4, "{worst:?}");
     assert!(compared.into_iter().all(|count| count > 500), "{compared:?}");
 }

@@ -205,7 +205,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         (sheet, falling): (usize, bool),
     ) -> Result<(), Undecided> {
         let (shell, course, limits) = (self.shell, self.course, self.limits);
-        let (ends, slack, near) = (shell.ends(), searching.slack, searching.near);
+        let (ends, slack, height_tolerance) = (shell.ends(), searching.slack, searching.height_tolerance);
         let last = self.last[sheet].as_ref();
         let bracket = [from.t, to.t];
         // So that the function falls.
@@ -233,7 +233,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             |t| {
                 let posed = shell.pose(course, t);
                 let meeting = shell.meet(&posed, line.at);
-                (meeting.room > 0.0).then(|| {
+                (meeting.half_chord_sq > 0.0).then(|| {
                     let [slope, rise] = shell.slope(&posed, &meeting, sheet);
                     Sample {
                         value: side * meeting.g[sheet],
@@ -255,7 +255,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 let way = (speed + sample.rise.abs()) * step.abs();
                 let inside = ends.hold(spot.along, spot.error + 2.0 * way)?;
                 // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
-                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= near) {
+                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
                     return None;
                 }
                 let gradient = shell.gradient(posed, meeting, sheet);

@@ -21,7 +21,10 @@ fn agrees<S: Shell>(
     };
     let ([from, to], length) = ([view(a), view(b)], b - a);
     let samples: Vec<_> = (0..=200).map(|n| view(a + length * f64::from(n) / 200.0)).collect();
-    let inside: Vec<bool> = samples.iter().map(|(_, _, meeting)| meeting.room > 0.0).collect();
+    let inside: Vec<bool> = samples
+        .iter()
+        .map(|(_, _, meeting)| meeting.half_chord_sq > 0.0)
+        .collect();
     let passage = shell.passage(limits, [&from.2, &to.2], length);
     let changes = inside.windows(2).filter(|pair| pair[0] != pair[1]).count();
     match passage {
@@ -36,7 +39,7 @@ fn agrees<S: Shell>(
         let falls = shell.falls(limits, [(&from.1, &from.2), (&to.1, &to.2)], length, sheet);
         let mut before: Option<f64> = None;
         for (t, posed, meeting) in &samples {
-            if meeting.room <= 0.0 {
+            if meeting.half_chord_sq <= 0.0 {
                 before = None;
                 continue;
             }

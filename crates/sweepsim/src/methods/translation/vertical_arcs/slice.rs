@@ -32,11 +32,11 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// Leaves the lines open that lie in a plane across the axis.
     fn flat(&mut self, height: f64, reach: f64) {
-        let ([.., ap, _], wheel, slack) = (self.axis, self.wheel, self.slack);
-        let [low, high] = self.directions[0].map(|cosine| wheel.radius * cosine);
+        let ([.., ap, _], arc, slack) = (self.axis, self.arc, self.slack);
+        let [low, high] = self.directions[0].map(|cosine| arc.radius * cosine);
         let (place, wide) = (ap * height, END * slack);
         let ranges = [[place - wide, place + wide], [low - reach, high + reach]];
-        self.each(wheel.centre, ranges, |own, (i, j), [q, p]| {
+        self.each(arc.centre, ranges, |own, (i, j), [q, p]| {
             let along = (p - place).abs() <= wide;
             if along && q >= ranges[1][0] - wide && q <= ranges[1][1] + wide {
                 own.lines.open(own.lines.lines.line(i, j));
@@ -46,8 +46,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// The outer or the inner circles that a stretch sweeps.
     fn slice(&mut self, stretch: &Stretch, side: f64) {
-        let ([.., ap, _], wheel, slack) = (self.axis, self.wheel, self.slack);
-        let r = wheel.radius;
+        let ([.., ap, _], arc, slack) = (self.axis, self.arc, self.slack);
+        let r = arc.radius;
         let radii = stretch.radii.map(|rho| r + side * rho);
         let corners = radii.map(|s| self.directions[0].map(|cosine| s * cosine));
         let all = corners.iter().flatten();
@@ -58,7 +58,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let p = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         let wide = END * slack;
         let ranges = [p, q].map(|[low, high]| [low - wide, high + wide]);
-        self.each(wheel.centre, ranges, |own, (i, j), [q, p]| {
+        self.each(arc.centre, ranges, |own, (i, j), [q, p]| {
             let [low, high] = stretch.heights;
             let height = ap * p;
             if height < low - wide || height > high + wide {
@@ -81,9 +81,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     /// A line and the circle of radius `r + side ρ`.
     #[inline]
     fn ring(&mut self, ring: &Ring, side: f64, line: usize, q: f64) {
-        let wheel = self.wheel;
+        let arc = self.arc;
         let off = 2.0 * self.slack * (2.0 + ring.rate);
-        let s = wheel.radius + side * ring.radius;
+        let s = arc.radius + side * ring.radius;
         if !(s.abs() > 16.0 * off) || !(ring.radius > 16.0 * off) {
             // About a point, or next to the axis.
             if q.abs() <= s.abs() + 32.0 * off {
@@ -114,7 +114,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                     let normal = self.in_space([across * cosine, self.axis[1] * ring.normal[1], across * sine]);
                     let source = (self.source)(share);
                     self.lines
-                        .crossing(line, wheel.centre[2] + s * sine, jump, normal, source);
+                        .crossing(line, arc.centre[2] + s * sine, jump, normal, source);
                 }
             }
         }

@@ -16,7 +16,7 @@ const LINES: f64 = 6.0;
 const LANES: usize = 64;
 
 /// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
-pub(crate) fn envelope(
+pub(crate) fn sweep_straight(
     outline: &Outline,
     heading: &Heading,
     (lines, ceiling): (&mut Collector, Option<&Ceiling>),

@@ -7,8 +7,8 @@ use sweepsim_dexel::Source;
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     /// The lines that the circle passes.
     pub(super) fn rim(&mut self, rim: &Rim) {
-        let [x, y, z] = self.wheel.centre;
-        let (r, big) = (self.wheel.radius, rim.radius);
+        let [x, y, z] = self.arc.centre;
+        let (r, big) = (self.arc.radius, rim.radius);
         let [low, high] = self.directions[0].map(|cosine| r * cosine);
         let level = z + rim.height;
         self.each(
@@ -22,14 +22,14 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     #[inline]
     fn edge(&mut self, rim: &Rim, level: f64, (i, j): (usize, usize), [q, p]: [f64; 2]) {
-        let (slack, r, big) = (self.slack, self.wheel.radius, rim.radius);
-        let room = (big - p) * (big + p);
+        let (slack, r, big) = (self.slack, self.arc.radius, rim.radius);
+        let half_chord_sq = (big - p) * (big + p);
         let line = self.lines.lines.line(i, j);
         let doubt = 8.0 * slack * (big + slack);
-        if room < -doubt {
+        if half_chord_sq < -doubt {
             return;
         }
-        if !(room > 64.0 * doubt) {
+        if !(half_chord_sq > 64.0 * doubt) {
             let wide = (66.0 * doubt).sqrt() + 4.0 * slack;
             let [low, high] = self.directions[0].map(|cosine| r * cosine);
             if q > low - wide && q < high + wide {
@@ -37,7 +37,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             }
             return;
         }
-        let half = room.sqrt();
+        let half = half_chord_sq.sqrt();
         let off = 2.0 * slack * (1.0 + p.abs() / half);
         for arm in [half, -half] {
             let cosine = (q - arm) / r;
@@ -58,7 +58,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                     }
                     Place::Inside(share) => share,
                 };
-                let side = self.wheel.side();
+                let side = self.arc.side();
                 // The direction of the motion, on the edge outwards and up.
                 let (ahead, up) = (-side * sine, side * cosine);
                 let out = arm * ahead / big;

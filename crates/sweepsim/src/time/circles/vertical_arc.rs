@@ -12,7 +12,7 @@ const SLIVER: f64 = 1.0 / 64.0;
 
 /// An arc of the tip in a plane along the dexels, at constant speed, of a tool that does not turn except about its own axis; or in a plane across them that holds this axis.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wheel {
+pub(crate) struct VerticalArc {
     pub centre: [f64; 3],
     pub radius: f64,
     /// The direction of the plane across the dexels; if it is level, the tool's axis is to the left of it.
@@ -26,8 +26,8 @@ pub(crate) struct Wheel {
 }
 
 /// A part of a move along an arc.
-pub(crate) struct WheelPart {
-    pub wheel: Wheel,
+pub(crate) struct VerticalArcPart {
+    pub vertical_arc: VerticalArc,
     pub segment: Segment,
     /// When it begins in the move, and the fraction of the move that it covers.
     pub start: f64,
@@ -67,7 +67,7 @@ pub(super) fn circle([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, rea
     (segments.len() == 1).then(|| segments.remove(0))
 }
 
-impl Wheel {
+impl VerticalArc {
     /// The arc between two points, in the plane through both; and its motion. `None` if it is not that of an arc.
     fn between(
         [a, b]: [Vector3<f64>; 2],
@@ -97,7 +97,7 @@ impl Wheel {
         let centre = [flat_centre.x, flat_centre.y, a.z + offset.y];
         let arc = TipArc::new(centre, [ahead.y, -ahead.x, 0.0], angle).ok()?;
         let segment = circle([a, b], axis, arc, reach)?;
-        let wheel = Self {
+        let arc = Self {
             centre,
             radius,
             ahead: ahead.into(),
@@ -105,7 +105,7 @@ impl Wheel {
             angle,
             level: false,
         };
-        (radius.is_finite() && radius > 0.0).then_some((wheel, segment))
+        (radius.is_finite() && radius > 0.0).then_some((arc, segment))
     }
 
     /// The same in a level plane, for a tool that lies along an axis of the grid.
@@ -126,7 +126,7 @@ impl Wheel {
         let radius = offset.norm();
         let centre = a.xy() + ahead * offset.x + left * offset.y;
         let centre = [centre.x, centre.y, a.z];
-        let wheel = Self {
+        let arc = Self {
             centre,
             radius,
             ahead: ahead.into(),
@@ -135,7 +135,7 @@ impl Wheel {
             level: true,
         };
         let segment = circle([a, b], axis, TipArc::new(centre, [0.0, 0.0, 1.0], angle).ok()?, reach)?;
-        (radius.is_finite() && radius > 0.0).then_some((wheel, segment))
+        (radius.is_finite() && radius > 0.0).then_some((arc, segment))
     }
 
     /// The parts of a move, in a frame, with the ends of the tip displaced. `None` if the move is not one of these, or if its law deviates by more than `limit`
@@ -145,7 +145,7 @@ impl Wheel {
         number: usize,
         (frame, reach): (&Frame, f64),
         (by, limit): ([Vector3<f64>; 2], f64),
-    ) -> Option<Vec<WheelPart>> {
+    ) -> Option<Vec<VerticalArcPart>> {
         let way = path.way(number);
         let Course::Arc(arc) = way.course else { return None };
         let ends = [path.pose(number), path.pose(number + 1)];
@@ -199,13 +199,13 @@ impl Wheel {
         let part = |pair: &[f64]| {
             let &[start, end] = pair else { return None };
             let (ends, angle) = ([point(start), point(end)], angle * (end - start));
-            let (wheel, segment) = if level {
+            let (vertical_arc, segment) = if level {
                 Self::between_level(ends, angle, (axis, reach), least)?
             } else {
                 Self::between(ends, (ahead.xy(), angle), (axis, reach), least)?
             };
-            Some(WheelPart {
-                wheel,
+            Some(VerticalArcPart {
+                vertical_arc,
                 segment,
                 start,
                 share: end - start,

@@ -23,7 +23,7 @@ use super::curves::Heading;
 use super::rows::{Floor, Row, rows};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
-use crate::time::circles::Inclined;
+use crate::time::circles::ArcAboutAxis;
 use nalgebra::Vector3;
 use roots::Open;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -42,9 +42,9 @@ const STILL: f64 = 1e-4;
 const AXIS: f64 = 64.0;
 
 /// A sweep of a tool along an arc. `source` gives the source at a share of its time.
-pub(crate) fn inclined(
+pub(crate) fn sweep_arc_about_axis(
     outline: &Outline,
-    (arc, segment, slack, near): (&Inclined, &Segment, f64, f64),
+    (arc, segment, slack, height_tolerance): (&ArcAboutAxis, &Segment, f64, f64),
     lines: &mut Collector,
     source: impl Fn(f64) -> Source,
     [patches, edges]: [&mut [bool]; 2],
@@ -66,7 +66,7 @@ pub(crate) fn inclined(
         slack,
         fine,
         coarse: fine + 2.0 * rise.abs(),
-        near,
+        height_tolerance,
         along,
         rise,
         slope,
@@ -87,7 +87,7 @@ pub(crate) fn inclined(
 }
 
 /// The number of parts of an arc that are almost straight, seen from a tool of this radius.
-fn sectors(arc: &Inclined, widest: f64) -> usize {
+fn sectors(arc: &ArcAboutAxis, widest: f64) -> usize {
     let bow = (0.5 * widest / arc.radius).min(1.0);
     let most = 2.0 * (1.0 - bow).acos();
     ((arc.angle.abs() / most).ceil() as usize).clamp(1, 64)
@@ -95,13 +95,13 @@ fn sectors(arc: &Inclined, widest: f64) -> usize {
 
 /// The search along one arc.
 struct Orbit<'a, 'b, S> {
-    arc: &'a Inclined,
+    arc: &'a ArcAboutAxis,
     /// The rounding error of coordinates, that of places on a line, and how far the rise may move a surface in addition.
     slack: f64,
     fine: f64,
     coarse: f64,
     /// Heights may be off by this much.
-    near: f64,
+    height_tolerance: f64,
     along: Along,
     rise: f64,
     /// The rise over the length of the arc.
@@ -236,7 +236,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
 
     /// Whether the rise bends a surface by so little: by `ρ`, or `r`, times the square of its slope.
     fn is_straight(&self, radius: f64, slope: f64) -> bool {
-        radius * slope * slope <= BENT * self.near
+        radius * slope * slope <= BENT * self.height_tolerance
     }
 
     /// The parts of the arc, with the ranges of `x` and `y` of directions from its axis to the tip.
@@ -337,7 +337,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             return Ok(());
         }
         // NaN is in doubt.
-        if !(spot.error * self.along.height.abs() <= 0.5 * self.near) {
+        if !(spot.error * self.along.height.abs() <= 0.5 * self.height_tolerance) {
             return Err(Open);
         }
         let far = length(spot.tip[0], spot.tip[1]);

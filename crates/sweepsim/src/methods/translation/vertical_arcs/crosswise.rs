@@ -22,9 +22,9 @@ pub(super) struct Span {
 impl<S> Rolling<'_, '_, S> {
     /// The parts of the arc in which neither sine nor cosine changes its sign.
     pub(super) fn quadrants(&self) -> Vec<Span> {
-        let [c, s] = self.wheel.from;
+        let [c, s] = self.arc.from;
         let start = s.atan2(c);
-        let end = start + self.wheel.angle;
+        let end = start + self.arc.angle;
         // A little more on both sides: solutions are compared with the ends of the arc.
         let [low, high] = [start.min(end) - 1e-9, start.max(end) + 1e-9];
         let quadrant = |angle: f64| (angle / FRAC_PI_2).floor() as i64;

@@ -13,9 +13,9 @@ const LEVEL: f64 = 1e-6;
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     /// The lines that a cone or a torus passes.
     pub(super) fn sheet(&mut self, sheet: &Sheet) {
-        let wheel = self.wheel;
+        let arc = self.arc;
         let outer = sheet.radii[1];
-        let [low, high] = self.directions[0].map(|cosine| wheel.radius * cosine);
+        let [low, high] = self.directions[0].map(|cosine| arc.radius * cosine);
         let [_, sines] = self.directions;
         // `(cos α, sin α)` is the normal of the section, or its opposite.
         let sides: Vec<f64> = [1.0, -1.0]
@@ -29,7 +29,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             })
             .collect();
         let ranges = [[-outer, outer], [low - outer, high + outer]];
-        self.each(wheel.centre, ranges, |own, (i, j), place| {
+        self.each(arc.centre, ranges, |own, (i, j), place| {
             let mark = own.lines.mark();
             for side in &sides {
                 if own.over(sheet, *side, (i, j), place).is_err() {
@@ -43,21 +43,21 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     #[inline]
     fn over(&mut self, sheet: &Sheet, side: f64, (i, j): (usize, usize), [q, p]: [f64; 2]) -> Result<(), Open> {
-        let (r, [inner, outer]) = (self.wheel.radius, sheet.radii);
+        let (r, [inner, outer]) = (self.arc.radius, sheet.radii);
         let slack = self.slack.max(16.0 * f64::EPSILON * outer);
         let doubt = 8.0 * slack * (outer + slack);
-        let room = (outer - p) * (outer + p);
-        if room < -doubt {
+        let half_chord_sq = (outer - p) * (outer + p);
+        if half_chord_sq < -doubt {
             return Ok(());
         }
         // The ends of the section, at least and at most.
         let root = |square: f64| square.max(0.0).sqrt();
-        let to = [root(room - doubt), root(room + doubt)];
-        let room = (inner - p) * (inner + p);
+        let to = [root(half_chord_sq - doubt), root(half_chord_sq + doubt)];
+        let half_chord_sq = (inner - p) * (inner + p);
         let from = if inner == 0.0 {
             [0.0; 2]
         } else {
-            [root(room - doubt), root(room + doubt)]
+            [root(half_chord_sq - doubt), root(half_chord_sq + doubt)]
         };
         let parallel = Parallel {
             sheet,
@@ -113,7 +113,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             Place::Near => return Err(Open),
             Place::Inside(share) => share,
         };
-        let z = self.wheel.centre[2] + r * sine + sheet.height(&at);
+        let z = self.arc.centre[2] + r * sine + sheet.height(&at);
         let jump = if (sine > 0.0) == grows { -1 } else { 1 };
         let across = sheet.out * at.e / at.rho;
         let up = sheet.out * sheet.up * at.square.sqrt();

@@ -69,7 +69,7 @@ pub(super) struct Point {
     /// `Q`.
     pub q: f64,
     /// `D`.
-    pub room: f64,
+    pub norm_sq: f64,
 }
 
 impl Sheet {
@@ -180,9 +180,9 @@ impl Curve for Parallel<'_> {
     fn at(&self, v: f64) -> Point {
         let rho = (v * v + self.p * self.p).sqrt();
         let [e, square] = self.sheet.normal(rho);
-        let room = v * v + square * self.p * self.p;
+        let norm_sq = v * v + square * self.p * self.p;
         // At a tip, where there is no normal.
-        let nu = if room > 0.0 { e * v / room.sqrt() } else { 0.0 };
+        let nu = if norm_sq > 0.0 { e * v / norm_sq.sqrt() } else { 0.0 };
         Point {
             x: v,
             v,
@@ -191,7 +191,7 @@ impl Curve for Parallel<'_> {
             square,
             nu,
             q: v + self.side * self.r * nu,
-            room,
+            norm_sq,
         }
     }
 
@@ -203,16 +203,16 @@ impl Curve for Parallel<'_> {
     /// Not negative places.
     fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
         match self.growths([a, b]) {
-            Some((slope, room)) => Bounds {
+            Some((slope, norm_sq)) => Bounds {
                 slope,
-                error: self.error([b.v, b.rho], room),
+                error: self.error([b.v, b.rho], norm_sq),
             },
             None => Bounds::UNKNOWN,
         }
     }
 
     fn error_at(&self, at: &Point) -> f64 {
-        self.error([at.v, at.rho], at.room)
+        self.error([at.v, at.rho], at.norm_sq)
     }
 
     fn is_axis(&self, at: &Point) -> bool {
@@ -229,21 +229,21 @@ impl Parallel<'_> {
     #[inline]
     pub fn growth(&self, at: &Point) -> f64 {
         let top = at.v * at.v * at.rho * self.sheet.bend() + at.e * at.square * self.p * self.p;
-        1.0 + self.side * self.r * top / (at.room * at.room.sqrt())
+        1.0 + self.side * self.r * top / (at.norm_sq * at.norm_sq.sqrt())
     }
 
     /// By how much `Q` is off: where `|∂ν/∂p|` and the error of `e` count. Infinite where that is not known.
-    fn error(&self, [v, rho]: [f64; 2], room: f64) -> f64 {
+    fn error(&self, [v, rho]: [f64; 2], norm_sq: f64) -> f64 {
         let bend = self.sheet.bend();
-        if !self.known(rho, room) {
+        if !self.known(rho, norm_sq) {
             return f64::INFINITY;
         }
-        self.slack * (8.0 + 4.0 * self.r * v * (self.p.abs() + 2.0 * rho * rho * bend) / (room * room.sqrt()))
+        self.slack * (8.0 + 4.0 * self.r * v * (self.p.abs() + 2.0 * rho * rho * bend) / (norm_sq * norm_sq.sqrt()))
     }
 
     /// Whether `D` is beyond its error.
-    pub fn known(&self, rho: f64, room: f64) -> bool {
-        room > CERTAIN * self.doubt(rho)
+    pub fn known(&self, rho: f64, norm_sq: f64) -> bool {
+        norm_sq > CERTAIN * self.doubt(rho)
     }
 
     /// By how much `D` is off.
@@ -260,8 +260,8 @@ impl Parallel<'_> {
         };
         let across = self.p * self.p;
         let bend = self.sheet.bend();
-        let room = [a.v * a.v + least * across, b.v * b.v + most * across];
-        if !self.known(b.rho, room[0]) {
+        let norm_sq = [a.v * a.v + least * across, b.v * b.v + most * across];
+        if !self.known(b.rho, norm_sq[0]) {
             return None;
         }
         let doubt = self.doubt(b.rho);
@@ -272,14 +272,14 @@ impl Parallel<'_> {
             a.v * a.v * a.rho * bend + low * across - doubt,
             b.v * b.v * b.rho * bend + high * across + doubt,
         ];
-        let rooms = [room[0] - doubt, room[1] + doubt].map(|room| room * room.sqrt());
-        let below = top[0] / if top[0] < 0.0 { rooms[0] } else { rooms[1] };
-        let above = top[1] / if top[1] > 0.0 { rooms[0] } else { rooms[1] };
+        let cubes = [norm_sq[0] - doubt, norm_sq[1] + doubt].map(|norm_sq| norm_sq * norm_sq.sqrt());
+        let below = top[0] / if top[0] < 0.0 { cubes[0] } else { cubes[1] };
+        let above = top[1] / if top[1] > 0.0 { cubes[0] } else { cubes[1] };
         let ends = [below, above].map(|rate| self.side * self.r * rate);
         let margin = 1e-12 * (1.0 + ends[0].abs().max(ends[1].abs()));
         Some((
             [1.0 + ends[0].min(ends[1]) - margin, 1.0 + ends[0].max(ends[1]) + margin],
-            room[0],
+            norm_sq[0],
         ))
     }
 }
@@ -331,12 +331,12 @@ mod tests {
                 prop_assert!(slope >= bounds.slope[0] && slope <= bounds.slope[1], "{slope} {bounds:?}");
                 let h = 1e-6 * at.v.min(0.1);
                 let [before, after] = [at.v - h, at.v + h].map(|v| parallel.at(v));
-                if at.square > 1e-3 && at.room > 1e-3 && at.v > 1e-2 {
+                if at.square > 1e-3 && at.norm_sq > 1e-3 && at.v > 1e-2 {
                     let found = (after.q - before.q) / (2.0 * h);
-                    prop_assert!((found - slope).abs() < 1e-4 * (1.0 + slope.abs() + r / at.room), "{found} {slope}");
+                    prop_assert!((found - slope).abs() < 1e-4 * (1.0 + slope.abs() + r / at.norm_sq), "{found} {slope}");
                     let rise = (sheet.height(&after) - sheet.height(&before)) / (2.0 * h);
                     let flat = -sheet.up * rise / (1.0 + rise * rise).sqrt();
-                    prop_assert!((flat - at.nu).abs() < 1e-4 / at.square / at.room, "{flat} {}", at.nu);
+                    prop_assert!((flat - at.nu).abs() < 1e-4 / at.square / at.norm_sq, "{flat} {}", at.nu);
                 }
             }
         }

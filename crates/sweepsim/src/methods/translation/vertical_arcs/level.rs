@@ -58,10 +58,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         [low, high]: [f64; 2],
         mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Open>,
     ) {
-        let r = self.wheel.radius;
+        let r = self.arc.radius;
         let [q, p] = self.directions.map(|range| range.map(|c| r * c));
         let ranges = [[p[0] + low, p[1] + high], [q[0] - radius, q[1] + radius]];
-        self.each(self.wheel.centre, ranges, |own, (i, j), place| {
+        self.each(self.arc.centre, ranges, |own, (i, j), place| {
             let (mark, line) = (own.lines.mark(), own.lines.lines.line(i, j));
             if visit(own, line, place).is_err() {
                 own.lines.forget(mark);
@@ -75,7 +75,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let Face { half, normal, jump } = *face;
         let [across, along, up] = normal;
         for side in [1.0, -1.0] {
-            let z = self.wheel.centre[2] + side * half;
+            let z = self.arc.centre[2] + side * half;
             let normal = self.in_space([across, along, side * up]);
             let source = (self.source)(share);
             let jump = if side > 0.0 { jump } else { -jump };
@@ -99,7 +99,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let big = ball.radius;
         let heights = [ball.centre - big, ball.centre + big];
         self.each_level(big, heights, |own, line, [q, p]| {
-            let (r, slack, p) = (own.wheel.radius, own.slack, p - ball.centre);
+            let (r, slack, p) = (own.arc.radius, own.slack, p - ball.centre);
             let distance = (q * q + p * p).sqrt();
             let error = 4.0 * slack / distance;
             if !(error < 1e-3) {
@@ -141,7 +141,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         self.each_level(radius, heights, |own, line, [q, p]| {
             own.widest(line, [q, p], (radius, heights, out))?;
             let Some((top, share)) = turn else { return Ok(()) };
-            let (r, slack) = (own.wheel.radius, own.slack);
+            let (r, slack) = (own.arc.radius, own.slack);
             let x = q - top * r;
             let doubt = END * slack * (radius + slack);
             let (near, wide) = ((radius - x) * (radius + x), END * slack);
@@ -171,7 +171,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         [q, p]: [f64; 2],
         (radius, heights, out): (f64, [f64; 2], f64),
     ) -> Result<(), Open> {
-        let (r, slack) = (self.wheel.radius, self.slack);
+        let (r, slack) = (self.arc.radius, self.slack);
         let (sine, error) = match self.directions_by(0, q / r, 4.0 * slack / r) {
             Directions::None | Directions::Level(false) => return Ok(()),
             Directions::Level(true) => return Err(Open),
@@ -200,7 +200,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     pub(super) fn level_edge(&mut self, rim: &Rim) {
         let (place, big) = (rim.height, rim.radius);
         self.each_level(big, [place; 2], |own, line, [q, p]| {
-            let (r, slack) = (own.wheel.radius, own.slack);
+            let (r, slack) = (own.arc.radius, own.slack);
             let sine = (p - place) / r;
             let (cosine, error) = match own.directions_by(1, sine, 4.0 * slack / r) {
                 Directions::None | Directions::Level(false) => return Ok(()),
@@ -219,7 +219,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 };
                 let Place::Inside(share) = place else { return Err(Open) };
                 // The direction of the motion, on the edge outwards and along the axis.
-                let turn = own.wheel.side();
+                let turn = own.arc.side();
                 let (across, along) = (-turn * sine * x / big, turn * cosine);
                 let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
                 let faces = rim.normals.map(|[n, m]| n * across + m * along);
@@ -248,7 +248,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         self.each_level(quarter.sheet.radii[1], [a.min(b), a.max(b)], |own, line, place| {
             let slack = own.slack.max(quarter.rounding());
             for span in &spans {
-                let crossing = Crossing::new(quarter, (own.wheel.radius, slack), place, span.quadrant);
+                let crossing = Crossing::new(quarter, (own.arc.radius, slack), place, span.quadrant);
                 let Some([from, to]) = crossing.within(span.angles) else {
                     continue;
                 };

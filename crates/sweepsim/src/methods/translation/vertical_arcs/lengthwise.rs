@@ -52,18 +52,18 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let [low, high] = self.along(heights);
         let wide = 8.0 * self.slack;
         let doubt = 8.0 * self.slack * (radius + self.slack);
-        let level = self.wheel.centre[2] + top * self.wheel.radius;
+        let level = self.arc.centre[2] + top * self.arc.radius;
         let ranges = [[-radius, radius], [low - wide, high + wide]];
-        self.each(self.wheel.centre, ranges, |own, (i, j), [q, p]| {
-            let (line, room) = (own.lines.lines.line(i, j), (radius - p) * (radius + p));
-            if room < -doubt || q < low - wide || q > high + wide {
+        self.each(self.arc.centre, ranges, |own, (i, j), [q, p]| {
+            let (line, half_chord_sq) = (own.lines.lines.line(i, j), (radius - p) * (radius + p));
+            if half_chord_sq < -doubt || q < low - wide || q > high + wide {
                 return;
             }
-            if !(room > 64.0 * doubt) || q < low + wide || q > high - wide {
+            if !(half_chord_sq > 64.0 * doubt) || q < low + wide || q > high - wide {
                 own.lines.open(line);
                 return;
             }
-            let half = room.sqrt();
+            let half = half_chord_sq.sqrt();
             for (change, side) in changes.into_iter().zip([1.0, -1.0]) {
                 if change != 0 {
                     let normal = own.in_space([0.0, out * p / radius, out * side * half / radius]);
@@ -76,10 +76,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// The lines that a sharp edge passes.
     pub(super) fn edge_lengthwise(&mut self, rim: &Rim) {
-        let (r, big) = (self.wheel.radius, rim.radius);
+        let (r, big) = (self.arc.radius, rim.radius);
         let place = self.axis[0] * rim.height;
         let [low, high] = self.directions[0].map(|cosine| place + r * cosine);
-        self.each(self.wheel.centre, [[-big, big], [low, high]], |own, (i, j), [q, p]| {
+        self.each(self.arc.centre, [[-big, big], [low, high]], |own, (i, j), [q, p]| {
             let mark = own.lines.mark();
             if own.passes(rim, (i, j), [q - place, p]).is_err() {
                 own.lines.forget(mark);
@@ -90,10 +90,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     #[inline]
     fn passes(&mut self, rim: &Rim, (i, j): (usize, usize), [q, p]: [f64; 2]) -> Result<(), Open> {
-        let (slack, r, big, [aq, ..]) = (self.slack, self.wheel.radius, rim.radius, self.axis);
-        let room = (big - p) * (big + p);
+        let (slack, r, big, [aq, ..]) = (self.slack, self.arc.radius, rim.radius, self.axis);
+        let half_chord_sq = (big - p) * (big + p);
         let doubt = 8.0 * slack * (big + slack);
-        if room < -doubt {
+        if half_chord_sq < -doubt {
             return Ok(());
         }
         let (sine, error) = match self.directions(q / r, 4.0 * slack / r) {
@@ -102,7 +102,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             Directions::Pair(sine, error) => (sine, error),
         };
         let line = self.lines.lines.line(i, j);
-        let half = room.max(0.0).sqrt();
+        let half = half_chord_sq.max(0.0).sqrt();
         let off = 2.0 * slack * (1.0 + p.abs() / half);
         for sine in [sine, -sine] {
             let share = match self.place([q / r, sine], error) {
@@ -110,11 +110,11 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 Place::Near => return Err(Open),
                 Place::Inside(share) => share,
             };
-            if !(room > 64.0 * doubt) {
+            if !(half_chord_sq > 64.0 * doubt) {
                 return Err(Open);
             }
             // The direction of the motion, on the edge along the axis and outwards.
-            let turn = self.wheel.side();
+            let turn = self.arc.side();
             let (along, up) = (-turn * sine * aq, turn * q / r);
             for arm in [half, -half] {
                 let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
@@ -134,7 +134,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 let [radial, axial] = [0, 1].map(|k| n[k] * b.abs() + m[k] * a.abs());
                 let normal = self.in_space([axial * aq, radial * p / big, radial * arm / big]);
                 let source = (self.source)(share);
-                let z = self.wheel.centre[2] + r * sine + arm;
+                let z = self.arc.centre[2] + r * sine + arm;
                 self.lines.crossing(line, z, jump, normal, source);
             }
         }
@@ -143,11 +143,11 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// The lines that a cone or a torus passes.
     fn quarter(&mut self, quarter: &Quarter) {
-        let (wheel, outer) = (self.wheel, quarter.sheet.radii[1]);
-        let [low, high] = self.directions[0].map(|cosine| wheel.radius * cosine);
+        let (arc, outer) = (self.arc, quarter.sheet.radii[1]);
+        let [low, high] = self.directions[0].map(|cosine| arc.radius * cosine);
         let [from, to] = self.along(quarter.ends.map(|end| quarter.climb * end));
         let ranges = [[-outer, outer], [from + low, to + high]];
-        self.each(wheel.centre, ranges, |own, (i, j), place| {
+        self.each(arc.centre, ranges, |own, (i, j), place| {
             let mark = own.lines.mark();
             for side in [1.0, -1.0] {
                 if own.meets(quarter, side, (i, j), place).is_err() {
@@ -161,7 +161,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     #[inline]
     fn meets(&mut self, quarter: &Quarter, side: f64, line: (usize, usize), [q, p]: [f64; 2]) -> Result<(), Open> {
-        let r = self.wheel.radius;
+        let r = self.arc.radius;
         let slack = self.slack.max(quarter.rounding());
         let mirror = quarter.climb * self.axis[0];
         // Of `side ν`, which is `mirror cos α`.
@@ -226,7 +226,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 Place::Inside(share) => share,
             };
             let v = half * at.v;
-            let z = self.wheel.centre[2] + r * sine + v;
+            let z = self.arc.centre[2] + r * sine + v;
             let jump = if (sine > 0.0) == grows { -1 } else { 1 };
             let normal = self.in_space([axial, radial * parallel.p, radial * v]);
             let source = (self.source)(share);

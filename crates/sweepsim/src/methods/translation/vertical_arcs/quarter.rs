@@ -172,9 +172,10 @@ impl Quarter {
                 tube,
                 side,
             } => {
-                let room = (tube - (p - middle)) * (tube + (p - middle));
+                let half_chord_sq = (tube - (p - middle)) * (tube + (p - middle));
                 let doubt = 4.0 * doubt * tube;
-                let [near, far] = [room - doubt, room + doubt].map(|room| room.max(0.0).sqrt());
+                let [near, far] =
+                    [half_chord_sq - doubt, half_chord_sq + doubt].map(|half_chord_sq| half_chord_sq.max(0.0).sqrt());
                 if side > 0.0 {
                     [level - far, level - near]
                 } else {
@@ -188,14 +189,14 @@ impl Quarter {
 
 impl Lengthwise<'_> {
     /// By how much `Q` is off.
-    fn error(&self, [v, rho]: [f64; 2], square: f64, room: f64) -> f64 {
+    fn error(&self, [v, rho]: [f64; 2], square: f64, norm_sq: f64) -> f64 {
         let Parallel { sheet, p, r, slack, .. } = self.parallel;
-        if !self.parallel.known(rho, room) {
+        if !self.parallel.known(rho, norm_sq) {
             return f64::INFINITY;
         }
         // Those of `x`, by the terms of `ν′`, and of `ρ` and `p`.
         let top = rho * v * v * sheet.bend() + square * p * p + 2.0 * square.sqrt() * p.abs() * rho;
-        slack * (8.0 + 4.0 * r * top / (room * room.sqrt()))
+        slack * (8.0 + 4.0 * r * top / (norm_sq * norm_sq.sqrt()))
     }
 }
 
@@ -222,9 +223,9 @@ impl Curve for Lengthwise<'_> {
             }
         };
         let v = ((rho - p) * (rho + p)).max(0.0).sqrt();
-        let room = v * v + square * p * p;
-        let nu = if room > 0.0 {
-            -self.quarter.side() * rho * (square / room).sqrt()
+        let norm_sq = v * v + square * p * p;
+        let nu = if norm_sq > 0.0 {
+            -self.quarter.side() * rho * (square / norm_sq).sqrt()
         } else {
             0.0
         };
@@ -236,7 +237,7 @@ impl Curve for Lengthwise<'_> {
             square,
             nu,
             q: x + side * r * nu,
-            room,
+            norm_sq,
         }
     }
 
@@ -247,16 +248,16 @@ impl Curve for Lengthwise<'_> {
 
     fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
         match self.parallel.growths([a, b]) {
-            Some((slope, room)) => Bounds {
+            Some((slope, norm_sq)) => Bounds {
                 slope,
-                error: self.error([b.v, b.rho], a.square.max(b.square), room),
+                error: self.error([b.v, b.rho], a.square.max(b.square), norm_sq),
             },
             None => Bounds::UNKNOWN,
         }
     }
 
     fn error_at(&self, at: &Point) -> f64 {
-        self.error([at.v, at.rho], at.square, at.room)
+        self.error([at.v, at.rho], at.square, at.norm_sq)
     }
 
     fn slack(&self) -> f64 {
@@ -329,13 +330,13 @@ mod tests {
                     prop_assert!(slope >= bounds.slope[0] && slope <= bounds.slope[1], "{slope} {bounds:?}");
                     let h = 1e-6 * (at.x - from[1]).min(ends[1] - at.x).min(0.1);
                     let [before, after] = [at.x - h, at.x + h].map(|x| curve.at(x));
-                    if at.room > 1e-2 && at.v > 1e-2 && at.e.abs() > 1e-2 && h > 1e-9 {
+                    if at.norm_sq > 1e-2 && at.v > 1e-2 && at.e.abs() > 1e-2 && h > 1e-9 {
                         let found = (after.q - before.q) / (2.0 * h);
-                        prop_assert!((found - slope).abs() < 1e-4 * (1.0 + slope.abs() + r / at.room) / at.e.abs(), "{found} {slope}");
+                        prop_assert!((found - slope).abs() < 1e-4 * (1.0 + slope.abs() + r / at.norm_sq) / at.e.abs(), "{found} {slope}");
                         // The section is the graph of `v`.
                         let widens = (after.v - before.v) / (2.0 * h);
                         let along = -quarter.side() * widens / (1.0 + widens * widens).sqrt();
-                        prop_assert!((along - at.nu).abs() < 1e-3 / at.room, "{along} {}", at.nu);
+                        prop_assert!((along - at.nu).abs() < 1e-3 / at.norm_sq, "{along} {}", at.nu);
                     }
                 }
             }

@@ -1,6 +1,6 @@
 //! Where the squared distance of a curve from the centre is monotone, and where a line lies along the way of a point of it.
 
-use super::Bow;
+use super::LevelArcSearch;
 use crate::methods::translation::curves::{Graph, Seen, Turned};
 use sweepsim_dexel::Source;
 
@@ -25,15 +25,15 @@ pub(super) enum Place {
     Inside([f64; 2]),
 }
 
-impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
+impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     /// Whether lines at this squared distance are much nearer to the centre than the axis is. There, distances are as accurate as coordinates are, however small.
     pub(super) fn is_near(&self, s: f64) -> bool {
-        2.0 * s.sqrt() < self.round.radius
+        2.0 * s.sqrt() < self.arc.radius
     }
 
     /// `s` at a point of a graph.
     fn square(&self, q: f64, p: f64) -> f64 {
-        let out = self.round.radius - self.side * p;
+        let out = self.arc.radius - self.side * p;
         out * out + q * q
     }
 
@@ -58,7 +58,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let off = if near {
                     squares(OFF * slack, s)
                 } else {
-                    OFF * slack * (self.round.radius + p.abs() + end.q.abs())
+                    OFF * slack * (self.arc.radius + p.abs() + end.q.abs())
                 };
                 return (p, s, shift + off);
             }
@@ -87,11 +87,11 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
 
     /// The point of a graph at `p`, for a value of `s`. `near`: `p` is as accurate as the distance.
     pub(super) fn seen<G: Graph>(&self, graph: &G, bend: &Bend, s: f64, (p, near): (f64, bool)) -> Seen {
-        let (round, side, slack) = (self.round, self.side, self.heading.slack);
+        let (arc, side, slack) = (self.arc, self.side, self.heading.slack);
         let p = p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1]));
         let spot = graph.at(p);
-        let out = round.radius - side * p;
-        let far = round.radius + p.abs() + spot.q.abs();
+        let out = arc.radius - side * p;
+        let far = arc.radius + p.abs() + spot.q.abs();
         let distance = s.sqrt();
         // Of the point, and of s; then of p, and of the angle.
         let (own, square) = if near {
@@ -100,19 +100,19 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         } else {
             (4.0 * slack, 4.0 * slack * (far + distance))
         };
-        let off = square / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
+        let off = square / (2.0 * (p - side * arc.radius + spot.q * spot.slope)).abs();
         let error = own / distance + off * (out * spot.slope + side * spot.q).abs() / s;
         Seen { out, spot, error }
     }
 
     /// Where a line lies along the arc of a point that starts at `(out, ahead)` from the centre. `error`: of angles.
     pub(super) fn place(&self, [x, y]: [f64; 2], [out, ahead]: [f64; 2], s: f64, error: f64) -> Place {
-        let [fx, fy] = self.round.from;
+        let [fx, fy] = self.arc.from;
         let own = [x * fx + y * fy, self.side * (y * fx - x * fy)];
         // The angle from the point to the line, as a complex number.
         let c = own[0] * out + own[1] * ahead;
         let n = own[1] * out - own[0] * ahead;
-        let (end_sine, end_cosine) = self.round.angle.abs().sin_cos();
+        let (end_sine, end_cosine) = self.arc.angle.abs().sin_cos();
         let end = n * end_cosine - c * end_sine;
         let error = error * s;
         if n < -error || end > error {

@@ -63,7 +63,9 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             levels.push((level, at));
         }
         let whole = levels.iter().any(|(_, ends)| *ends != [true; 2]);
-        if flat && !(radius * self.slope.abs() <= self.near) || whole && !self.tells_angles(centre, Some(radius)) {
+        if flat && !(radius * self.slope.abs() <= self.height_tolerance)
+            || whole && !self.tells_angles(centre, Some(radius))
+        {
             return None;
         }
         let part = match piece.ball() {

@@ -8,12 +8,12 @@ use sweepsim_motion::{Course, Move, Path, Pose, Segment, TipArc, Turning};
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
 /// A tool without symmetry turns with an arc if its directions at the ends of all parts differ by less than this from those of the arc: the
-/// arc is then as long as the tool turns, and [`Round::parts`] limits by how much points are off.
+/// arc is then as long as the tool turns, and [`LevelArc::parts`] limits by how much points are off.
 const SAME_TURN: f64 = 1e-3;
 
 /// A turn about a line parallel to the dexels, at constant speed, which may rise.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Round {
+pub(crate) struct LevelArc {
     /// `(x, y)`.
     pub centre: [f64; 2],
     pub radius: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Round {
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-impl Round {
+impl LevelArc {
     /// The arc between two points, and its motion. `None` if it is not that of an arc.
     fn between(
         [a, b]: [Vector3<f64>; 2],
@@ -55,14 +55,14 @@ impl Round {
             Some(_) => path.segments(0, reach, f64::INFINITY),
             None => path.segments_of_symmetric(0, reach, f64::INFINITY),
         };
-        let round = Self {
+        let arc = Self {
             centre: centre.into(),
             radius,
             from: (out / radius).into(),
             angle,
             tool_x: sides.map(|[side, _]| side.into()),
         };
-        (segments.len() == 1 && radius.is_finite() && radius > 0.0).then(|| (round, segments.remove(0)))
+        (segments.len() == 1 && radius.is_finite() && radius > 0.0).then(|| (arc, segments.remove(0)))
     }
 
     /// The parts of a move, in a frame: as many as its `segments`, of equal length, with the ends of the tip displaced. `None` if the move is not one of these,

@@ -27,7 +27,7 @@ use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
-use crate::time::circles::Wheel;
+use crate::time::circles::VerticalArc;
 use ball::ball;
 use nalgebra::Vector3;
 use sheet::Sheet;
@@ -39,41 +39,41 @@ use sweepsim_motion::{Segment, SegmentEnd};
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A sweep of a tool along an arc. `source` gives the source at a share of its time.
-pub(crate) fn along(
+pub(crate) fn sweep_vertical_arc(
     outline: &Outline,
-    (wheel, segment, slack, near): (&Wheel, &Segment, f64, f64),
+    (arc, segment, slack, height_tolerance): (&VerticalArc, &Segment, f64, f64),
     (lines, ceiling): (&mut Collector, Option<&Ceiling>),
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
     let [patches, edges] = done;
     // The centre of a wide arc has fewer digits than the tool.
-    let far = wheel.centre.iter().fold(wheel.radius, |far, c| far.max(c.abs()));
+    let far = arc.centre.iter().fold(arc.radius, |far, c| far.max(c.abs()));
     let slack = slack.max(16.0 * f64::EPSILON * far);
-    if !(slack < 0.25 * near) {
+    if !(slack < 0.25 * height_tolerance) {
         return;
     }
     let turn = segment.start();
     let axis: Vector3<f64> = turn.column(2).into_owned();
-    let [ux, uy] = wheel.ahead;
+    let [ux, uy] = arc.ahead;
     let own = [ux * axis.x + uy * axis.y, ux * axis.y - uy * axis.x, axis.z];
     let mut rolling = Rolling {
-        wheel,
+        arc,
         slack,
         axis: own,
-        directions: wheel.directions(),
+        directions: arc.directions(),
         rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| {
             let [x, y, z] = segment.velocity(end)[1];
-            if wheel.level { ux * x + uy * y } else { z }
+            if arc.level { ux * x + uy * y } else { z }
         }),
         highest: ceiling.map_or(f64::INFINITY, |ceiling| {
-            ceiling.above(wheel.heights()[0], lines.lines.spacing())
+            ceiling.above(arc.heights()[0], lines.lines.spacing())
         }),
         lines,
         source,
     };
     let stance = match own {
-        _ if wheel.level => Stance::Level,
+        _ if arc.level => Stance::Level,
         [0.0, 0.0, 1.0] => Stance::Upright,
         [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
         [1.0 | -1.0, 0.0, 0.0] => Stance::Within,
@@ -113,7 +113,7 @@ enum Stance {
 
 /// The search along one arc.
 struct Rolling<'a, 'b, S> {
-    wheel: &'a Wheel,
+    arc: &'a VerticalArc,
     /// The rounding error of coordinates.
     slack: f64,
     /// The tool's axis, `(q, p, z)`.
@@ -192,7 +192,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         ranges: [[f64; 2]; 2],
         mut visit: impl FnMut(&mut Self, (usize, usize), [f64; 2]),
     ) {
-        let ahead = self.wheel.ahead;
+        let ahead = self.arc.ahead;
         let floor = Floor {
             tip,
             ahead,
@@ -230,8 +230,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let (top, share) = self.turn([0.0, 1.0]);
         let change = i8::from(after) - i8::from(before);
         let jump = if up > 0.0 { -change } else { change };
-        let [x, y, z] = self.wheel.centre;
-        let z = z + height + top * self.wheel.radius;
+        let [x, y, z] = self.arc.centre;
+        let z = z + height + top * self.arc.radius;
         let (error, source) = (4.0 * self.slack, (self.source)(share));
         let inner = if inner == 0.0 { f64::NEG_INFINITY } else { inner };
         self.each([x, y, z], [[-outer, outer]; 2], |own, (i, j), [q, p]| {
@@ -246,17 +246,17 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// Where a direction is on the arc, whose angle is known up to an error.
     fn place(&self, [c, s]: [f64; 2], error: f64) -> Place {
-        let wheel = self.wheel;
-        let ([x, y], side) = (wheel.from, wheel.side());
+        let arc = self.arc;
+        let ([x, y], side) = (arc.from, arc.side());
         // The turn from the start, as a complex number, and seen from the end.
         let (cosine, sine) = (c * x + s * y, side * (s * x - c * y));
-        let (end_sine, end_cosine) = wheel.angle.abs().sin_cos();
+        let (end_sine, end_cosine) = arc.angle.abs().sin_cos();
         let end = sine * end_cosine - cosine * end_sine;
         let error = error + ROUNDING;
         if sine < -error || end > error {
             Place::Outside
         } else if sine > error && end < -error {
-            Place::Inside(sine.atan2(cosine) / wheel.angle.abs())
+            Place::Inside(sine.atan2(cosine) / arc.angle.abs())
         } else {
             Place::Near
         }
@@ -290,7 +290,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// A direction `(q, p, z)` in space.
     fn in_space(&self, [q, p, z]: [f64; 3]) -> [f32; 3] {
-        let [x, y] = self.wheel.ahead;
+        let [x, y] = self.arc.ahead;
         unit(Vector3::new(x * q - y * p, y * q + x * p, z))
     }
 }

@@ -14,13 +14,13 @@ fn products(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 pub(super) fn ball<S: Fn(f64) -> Source>(rolling: &mut Rolling<S>, ball: &Ball) {
-    let (wheel, [aq, ap, az]) = (rolling.wheel, rolling.axis);
-    let [ux, uy] = wheel.ahead;
+    let (arc, [aq, ap, az]) = (rolling.arc, rolling.axis);
+    let [ux, uy] = arc.ahead;
     let (q, p) = (ball.centre * aq, ball.centre * ap);
-    let [x, y, z] = wheel.centre;
+    let [x, y, z] = arc.centre;
     // Where the ball's centre is when the tip is at that of the arc.
     let middle = [x + ux * q - uy * p, y + uy * q + ux * p, z + ball.centre * az];
-    let (r, big) = (wheel.radius, ball.radius);
+    let (r, big) = (arc.radius, ball.radius);
     let [cosines, sines] = rolling.directions;
     for side in [1.0, -1.0] {
         let radii = if side > 0.0 { [r, r + big] } else { [r - big, r] };
@@ -48,15 +48,15 @@ fn circle<S: Fn(f64) -> Source>(
     (i, j): (usize, usize),
     [q, p]: [f64; 2],
 ) {
-    let (slack, r, big) = (rolling.slack, rolling.wheel.radius, ball.radius);
-    let room = (big - p) * (big + p);
+    let (slack, r, big) = (rolling.slack, rolling.arc.radius, ball.radius);
+    let half_chord_sq = (big - p) * (big + p);
     let line = rolling.lines.lines.line(i, j);
     // Coordinates that are off by `slack` change it by this much.
     let doubt = 8.0 * slack * (big + slack);
-    if room < -doubt {
+    if half_chord_sq < -doubt {
         return;
     }
-    if !(room > 64.0 * doubt) {
+    if !(half_chord_sq > 64.0 * doubt) {
         // Both circles are almost that of the centre.
         let wide = (66.0 * doubt).sqrt() + slack;
         let range = products([r - wide, r + wide], rolling.directions[0]);
@@ -65,7 +65,7 @@ fn circle<S: Fn(f64) -> Source>(
         }
         return;
     }
-    let rho = room.sqrt();
+    let rho = half_chord_sq.sqrt();
     let (nu, off) = (side * rho, 2.0 * slack * (1.0 + p.abs() / rho));
     let s = r + nu;
     if !(s.abs() > 16.0 * off) {

@@ -4,7 +4,7 @@
 use super::super::curves::stands;
 use super::super::rows::numbers;
 use super::super::{Ceiling, Collector};
-use super::lunes::Lune;
+use super::ball_sign_changes::Lune;
 use super::radial::{Hypot, Radial, Spot, Stretch};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
@@ -25,18 +25,18 @@ pub(crate) enum Neighbour {
 impl Neighbour {
     /// An end of a move of a tool that does not turn, or that stands along the dexels: a turn about its own axis moves no point out of its surface.
     pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
-        if part.wheel.is_some() || part.inclined.is_some() {
+        if part.vertical_arc.is_some() || part.arc_about_axis.is_some() {
             return Some(Self::Along(part.segment.velocity(end)[1]));
         }
         if !(part.segment.is_arc() && part.segment.turns().len() == 1 || stands(part)) {
             return None;
         }
         let travel = part.segment.travel();
-        Some(Self::Along(match (&part.round, end) {
+        Some(Self::Along(match (&part.level_arc, end) {
             (None, _) => travel,
-            (Some(round), end) => {
-                let [x, y] = round.ahead(if end == SegmentEnd::Start { 0.0 } else { 1.0 });
-                [x * round.length(), y * round.length(), travel[2]]
+            (Some(level_arc), end) => {
+                let [x, y] = level_arc.ahead(if end == SegmentEnd::Start { 0.0 } else { 1.0 });
+                [x * level_arc.length(), y * level_arc.length(), travel[2]]
             }
         }))
     }

@@ -1,7 +1,7 @@
 //! Where a dexel line meets a cone or a cylinder of a leaning tool: see [`leaning`](super::leaning).
 
+use super::cone_sign_changes::Wedge;
 use super::leaning::{PARALLEL, Point, Points, within};
-use super::wedges::Wedge;
 
 /// Nearer to the axis than this, azimuths say nothing.
 const APEX: f64 = 1e-6;

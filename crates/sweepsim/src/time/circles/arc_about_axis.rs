@@ -1,6 +1,6 @@
 //! Arcs about the axis of a tool of revolution that leans or lies, as circles to the last digit: those of programs in tilted planes.
 
-use super::wheel::circle;
+use super::vertical_arc::circle;
 use nalgebra::{Rotation3, Unit, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
@@ -13,7 +13,7 @@ const LEVEL: f64 = 4.0 * f64::EPSILON;
 
 /// A turn of the tip about a line parallel to the tool's axis, at constant speed, not more than 90°. It rises by no more than tips are displaced.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Inclined {
+pub(crate) struct ArcAboutAxis {
     /// In the plane across the axis through the tip at the start.
     pub centre: [f64; 3],
     pub radius: f64,
@@ -32,7 +32,7 @@ fn across([x, y]: [f64; 2], [s, k]: [f64; 2]) -> [Vector3<f64>; 2] {
     [Vector3::new(-k * x, -k * y, s), Vector3::new(y, -x, 0.0)]
 }
 
-impl Inclined {
+impl ArcAboutAxis {
     /// The arc between two points, and its motion. `None` if it is not that of an arc.
     fn between([a, b]: [Vector3<f64>; 2], angle: f64, axis: [f64; 3], reach: f64) -> Option<(Self, Segment)> {
         let lean = axis[0].hypot(axis[1]);
@@ -43,7 +43,7 @@ impl Inclined {
         let radius = offset.norm();
         let centre = a + up * offset.x + level * offset.y;
         let segment = circle([a, b], axis, TipArc::new(centre.into(), axis, angle).ok()?, reach)?;
-        let inclined = Self {
+        let arc = Self {
             centre: centre.into(),
             radius,
             ahead,
@@ -51,7 +51,7 @@ impl Inclined {
             from: (-offset / radius).into(),
             angle,
         };
-        (radius.is_finite() && radius > 0.0).then_some((inclined, segment))
+        (radius.is_finite() && radius > 0.0).then_some((arc, segment))
     }
 
     /// The parts of a move, in a frame: `count` of equal length, with the ends of the tip displaced. `None` if the move is not one of these, or if its law deviates by more than

@@ -18,7 +18,7 @@ use super::rows::{Row, Sector};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
-use crate::time::circles::Round;
+use crate::time::circles::LevelArc;
 use ends::{Bend, Place};
 use std::f64::consts::PI;
 use sweepsim_dexel::Source;
@@ -31,41 +31,41 @@ const MAGNIFIED: f64 = 1e4;
 const BLUR: f64 = 1e-3;
 
 /// A sweep of the grazing curves and edges of a tool along an arc. `source` gives the source at a time.
-pub(crate) fn around(
+pub(crate) fn sweep_level_arc(
     outline: &Outline,
-    (heading, round): (&Heading, &Round),
+    (heading, arc): (&Heading, &LevelArc),
     (lines, ceiling): (&mut Collector, Option<&Ceiling>),
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
     let [patches, edges] = done;
-    let mut bow = Bow {
+    let mut search = LevelArcSearch {
         heading,
-        round,
+        arc,
         highest: ceiling.map_or(f64::INFINITY, |ceiling| {
             let lowest = heading.tip[2].min(heading.tip[2] + heading.way[2]);
             ceiling.above(lowest, lines.lines.spacing())
         }),
         lines,
         source,
-        side: round.side(),
+        side: arc.side(),
     };
     for piece in &outline.pieces {
-        if bow.piece(piece).is_some() {
+        if search.piece(piece).is_some() {
             patches[piece.patches.clone()].fill(true);
         }
     }
     for rim in &outline.rims {
-        if bow.rim(rim).is_some() {
+        if search.rim(rim).is_some() {
             edges[rim.edges.clone()].fill(true);
         }
     }
 }
 
 /// The search along one arc.
-struct Bow<'a, 'b, S> {
+struct LevelArcSearch<'a, 'b, S> {
     heading: &'a Heading,
-    round: &'a Round,
+    arc: &'a LevelArc,
     lines: &'a mut Collector<'b>,
     source: S,
     /// What is this high above the tip is above the ceiling at all times.
@@ -74,14 +74,14 @@ struct Bow<'a, 'b, S> {
     side: f64,
 }
 
-impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
+impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     /// `None` if there is no closed form.
     fn piece(&mut self, piece: &Piece) -> Option<()> {
         if piece.heights()[0] > self.highest {
             return Some(());
         }
         let heading = self.heading;
-        let square = self.round.radius * self.round.radius;
+        let square = self.arc.radius * self.arc.radius;
         match piece.shape {
             Shape::Line { normal } => {
                 let graphs = slant::slants(heading, piece.below(self.highest), normal)?;
@@ -90,7 +90,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     base: square,
                     bow: ((1.0 - cosine) * (1.0 + cosine)).recip(),
                     least: square * cosine * cosine,
-                    radius: self.round.radius,
+                    radius: self.arc.radius,
                 };
                 self.all(&graphs, parabola, |_, _, _| None);
             }
@@ -109,7 +109,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     base: square + sine * sine * radius * radius,
                     bow,
                     least: sine * sine * (radius * radius - square / bow),
-                    radius: self.round.radius,
+                    radius: self.arc.radius,
                 };
                 let beside = self.beside();
                 self.all(&graphs, parabola, |ring, s, beyond| Some(ring.near(&beside, s, beyond)));
@@ -135,15 +135,15 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                         let ends = range.map(|e| graph.across(e));
                         let turn = |p: f64| graph.square_at(&beside, if p == ends[0] { range[0] } else { range[1] });
                         let bend = self.bend(graph, [ends[0].min(ends[1]), ends[0].max(ends[1])], turn);
-                        self.sweep(graph, &bend, |bow, s| {
-                            let near = if bow.is_near(s) {
+                        self.sweep(graph, &bend, |search, s| {
+                            let near = if search.is_near(s) {
                                 graph.near(range, &beside, s)
                             } else {
                                 None
                             };
                             near.or_else(|| {
                                 let p = graph.invert_about(range, radius, side, s)?;
-                                Some(bow.seen(graph, &bend, s, (p, bow.is_near(s))))
+                                Some(search.seen(graph, &bend, s, (p, search.is_near(s))))
                             })
                         });
                     }
@@ -158,8 +158,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
             return Some(());
         }
         // p is as accurate as (s − base) / 2R.
-        let outer = self.round.radius + rim.radius;
-        let growth = 1.0 + 5.0 * outer / self.round.radius;
+        let outer = self.arc.radius + rim.radius;
+        let growth = 1.0 + 5.0 * outer / self.arc.radius;
         if !(growth < MAGNIFIED) {
             return None;
         }
@@ -169,10 +169,10 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         };
         let graphs = ring::rim(&heading, rim)?;
         let parabola = Parabola {
-            base: self.round.radius * self.round.radius + rim.radius * rim.radius,
+            base: self.arc.radius * self.arc.radius + rim.radius * rim.radius,
             bow: 0.0,
             least: 0.0,
-            radius: self.round.radius,
+            radius: self.arc.radius,
         };
         let beside = self.beside();
         self.all(&graphs, parabola, |ring, s, beyond| Some(ring.near(&beside, s, beyond)));
@@ -181,7 +181,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
 
     fn beside(&self) -> Beside {
         Beside {
-            radius: self.round.radius,
+            radius: self.arc.radius,
             side: self.side,
             slack: self.heading.slack,
         }
@@ -205,11 +205,15 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
             for span in spans.into_iter().flatten() {
                 let bend = self.bend(graph, span, |_| parabola.least);
                 let beyond = turn.is_some_and(|turn| side * (0.5 * (span[0] + span[1]) - turn) > 0.0);
-                self.sweep(graph, &bend, |bow, s| {
-                    let seen = if bow.is_near(s) { near(graph, s, beyond) } else { None };
+                self.sweep(graph, &bend, |search, s| {
+                    let seen = if search.is_near(s) {
+                        near(graph, s, beyond)
+                    } else {
+                        None
+                    };
                     seen.or_else(|| {
                         let (p, near) = parabola.invert(s, beyond);
-                        Some(bow.seen(graph, &bend, s, (side * p, near)))
+                        Some(search.seen(graph, &bend, s, (side * p, near)))
                     })
                 });
             }
@@ -220,7 +224,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
     fn sliver<G: Graph>(&mut self, graph: &G) {
         let slack = self.heading.slack;
         let ([low, high], own, [back, front]) = (graph.span(), graph.margins(), graph.reach());
-        let radial = [low - own[0], high + own[1]].map(|p| self.round.radius - self.side * p);
+        let radial = [low - own[0], high + own[1]].map(|p| self.arc.radius - self.side * p);
         let radial = [radial[0].min(radial[1]), radial[0].max(radial[1])];
         let squares = |[a, b]: [f64; 2]| {
             let least = if a <= 0.0 && b >= 0.0 { 0.0 } else { (a * a).min(b * b) };
@@ -235,10 +239,10 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
     /// Leaves the lines of a sector open, with `s` in a range.
     fn leave(&mut self, sector: Sector, range: [f64; 2]) {
         let lattice = self.lines.lines;
-        let (round, lines) = (self.round, &mut *self.lines);
+        let (arc, lines) = (self.arc, &mut *self.lines);
         sector.rows(lattice, self.heading.slack, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - round.centre[1];
+                let y = lattice.coordinate(1, j) - arc.centre[1];
                 let s = x * x + y * y;
                 if s >= range[0] && s <= range[1] && lattice.asks(i, j) {
                     lines.open(lattice.line(i, j));
@@ -249,22 +253,22 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
 
     /// Where lines may lie whose points of the tool are in a rectangle, outwards and ahead of the centre, with `s` in a range.
     fn sector(&self, radial: [f64; 2], [back, front]: [f64; 2], s: [f64; 2]) -> Sector {
-        let round = self.round;
+        let arc = self.arc;
         let corners = radial.map(|out| [back, front].map(|q| q.atan2(out)));
         let all = corners.iter().flatten();
         let range = all.fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| [r[0].min(*a), r[1].max(*a)]);
         // Angles of a rectangle about the centre, or behind it, are in no interval.
         let off = NARROW * self.heading.slack;
         let behind = radial[0].min(radial[1]) <= off && back <= off && front >= -off;
-        let start = round.from[1].atan2(round.from[0]);
+        let start = arc.from[1].atan2(arc.from[0]);
         let angles = if behind {
             [0.0, 2.0 * PI]
         } else {
-            let [a, b] = [range[0] - BLUR, range[1] + round.angle.abs() + BLUR].map(|angle| start + self.side * angle);
+            let [a, b] = [range[0] - BLUR, range[1] + arc.angle.abs() + BLUR].map(|angle| start + self.side * angle);
             [a.min(b), a.max(b)]
         };
         Sector {
-            centre: round.centre,
+            centre: arc.centre,
             radii: s.map(|s| s.max(0.0).sqrt()),
             angles,
         }
@@ -276,9 +280,9 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let margins = bend.margins;
         let wide = [low - margins[0], high + margins[1]];
         let sure = [low + margins[0], high - margins[1]];
-        let (round, side, slack) = (self.round, self.side, self.heading.slack);
-        let turn = round.angle.abs();
-        let radial = bend.p.map(|p| round.radius - side * p);
+        let (arc, side, slack) = (self.arc, self.side, self.heading.slack);
+        let turn = arc.angle.abs();
+        let radial = bend.p.map(|p| arc.radius - side * p);
         if !(high - low > NARROW * (margins[0] + margins[1])) {
             // Next to the centre, angles are not certain.
             let (radial, reach) = if self.is_near(wide[1]) {
@@ -293,7 +297,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let lattice = self.lines.lines;
         sector.rows(lattice, slack, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - round.centre[1];
+                let y = lattice.coordinate(1, j) - arc.centre[1];
                 let s = x * x + y * y;
                 if s < wide[0] || s > wide[1] || !lattice.asks(i, j) {
                     continue;
@@ -319,7 +323,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     Place::Outside => {}
                     Place::Inside([c, n]) if spot.certain && !doubtful => {
                         let t = n.atan2(c) / turn;
-                        let [fx, fy] = round.from;
+                        let [fx, fy] = arc.from;
                         // Outwards and ahead after the turn.
                         let outward = [c * fx - side * n * fy, c * fy + side * n * fx];
                         let ahead = [-side * outward[1], side * outward[0]];

@@ -1,12 +1,12 @@
 //! The tool at rest between two moves without rotation, in closed form.
 
+mod ball_sign_changes;
+mod cone_sign_changes;
 mod cones;
 mod leaning;
-mod lunes;
 mod lying;
 mod placed;
 mod radial;
-mod wedges;
 
 pub(crate) use leaning::leaning;
 pub(crate) use placed::{Neighbour, placements};

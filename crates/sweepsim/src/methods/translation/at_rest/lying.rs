@@ -1,8 +1,8 @@
 //! A torus at rest whose axis is perpendicular to the dexels: a line is at one height along the axis, where the torus has a circle or two.
 
 use super::super::stretches::{Part, Stretch};
+use super::cone_sign_changes::{Wedge, wedges_between};
 use super::leaning::{Leaning, Point, Points, within};
-use super::wedges::{Wedge, wedges_between};
 use crate::cutter::outline::Piece;
 
 /// A vanishing distance is beyond doubt from so many times its error on.
