@@ -1,6 +1,7 @@
 //! What crosses crates, in one binary.
 
 mod brute_force;
+mod dependencies;
 mod railing;
 mod router_bit;
 mod same_part;

@@ -24,6 +24,18 @@ fn vector() -> impl Strategy<Value = [f64; 3]> {
     [number(), number(), number()]
 }
 
+/// Limits and cells of a grid, mostly one that can be made.
+fn area() -> impl Strategy<Value = ([f64; 2], [f64; 2], [usize; 2])> {
+    let any = ([number(), number()], [number(), number()], [0..5_usize, 0..5_usize]);
+    let good = (
+        [-3.0..3.0_f64, -3.0..3.0],
+        [0.1..5.0_f64, 0.1..5.0],
+        [1..5_usize, 1..5_usize],
+    )
+        .prop_map(|(min, size, cells)| (min, [min[0] + size[0], min[1] + size[1]], cells));
+    prop_oneof![1 => any, 2 => good]
+}
+
 fn end() -> impl Strategy<Value = End> {
     (number(), vector(), any::<Option<(u32, u32)>>(), number()).prop_map(|(z, normal, cut, t)| End {
         z,
@@ -162,12 +174,16 @@ proptest! {
 
     #[test]
     fn grids_and_frames_of_anything_are_made_or_refused(
-        min in [number(), number()], max in [number(), number()], cells in [0..5_usize, 0..5_usize],
+        (min, max, cells) in area(),
         origin in vector(), z in vector(), x in vector(), y in vector(),
         (i, j) in (any::<usize>(), any::<usize>()), stock in stock(), point in vector(),
     ) {
         let frames = [Frame::new(origin, z, x).ok(), Frame::from_axes(origin, [x, y, z]).ok(), Some(Frame::WORLD)];
-        let Ok(grid) = Grid::new(min, max, cells) else { return Ok(()) };
+        let grid = Grid::new(min, max, cells);
+        // Not even these: no cells, and limits that are no numbers or in the wrong order.
+        let good = cells.iter().all(|n| *n > 0) && (0..2).all(|k| min[k] < max[k] && (max[k] - min[k]).is_finite());
+        prop_assert!(good || grid.is_err());
+        let Ok(grid) = grid else { return Err(TestCaseError::reject("no grid")) };
         for frame in frames.into_iter().flatten() {
             let grid = grid.in_frame(frame);
             let inside = i < grid.cells()[0] && j < grid.cells()[1];
@@ -194,7 +210,8 @@ proptest! {
 
     #[test]
     fn meshes_of_anything_are_used_or_refused(
-        vertices in proptest::collection::vec(vector(), 0..5),
+        // Six are enough for all triangles.
+        vertices in prop_oneof![proptest::collection::vec(vector(), 0..5), proptest::collection::vec(vector(), 6)],
         triangles in proptest::collection::vec(any::<[u8; 3]>(), 0..5),
         cosine in number(), point in vector(), reach in number(), spacing in 0.1..9.0_f64,
     ) {
@@ -202,7 +219,7 @@ proptest! {
         mesh.vertices.extend(vertices);
         mesh.triangles.extend(triangles.iter().map(|t| t.map(|v| u32::from(v % 6))));
         let _ = mesh.crisp(cosine);
-        let Some(soup) = mesh.soup() else { return Ok(()) };
+        let Some(soup) = mesh.soup() else { return Err(TestCaseError::reject("a triangle without its corners")) };
         let _ = (soup.volume(), soup.check_closed(), soup.indexed());
         let distance = DistanceTo::new(&soup).unwrap();
         let _ = (distance.nearest(point), distance.nearest_facing(point, point, reach));

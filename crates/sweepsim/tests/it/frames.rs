@@ -48,7 +48,7 @@ proptest! {
         law in prop_oneof![Just(Law::Slerp), Just(Law::ConstantSpeed)],
         tool in 0..2usize,
     ) {
-        let Ok(frame) = Frame::new(o, z, x) else { return Ok(()) };
+        let frame = Frame::new(o, z, x).map_err(|error| TestCaseError::reject(error.to_string()))?;
         let poses: Vec<Pose> = tips
             .iter()
             .zip(&axes)
@@ -56,7 +56,8 @@ proptest! {
             .collect();
         let tool = [Tool::ball(1.5, 6.0), Tool::bull(1.5, 0.4, 6.0)][tool].clone().unwrap();
         let moved: Vec<Pose> = poses.iter().map(|pose| seen(pose, &frame)).collect();
-        let (Ok(path), Ok(moved)) = (Path::with_law(poses, law), Path::with_law(moved, law)) else { return Ok(()) };
+        let along = |poses| Path::with_law(poses, law).map_err(|error| TestCaseError::reject(error.to_string()));
+        let (path, moved) = (along(poses)?, along(moved)?);
         let grid = Grid::new([-9.03, -8.91], [9.07, 9.05], [24, 24]).unwrap();
         for method in [Method::General, Method::Lines] {
             let options = Options::new(TOLERANCE).method(method);

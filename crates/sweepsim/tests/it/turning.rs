@@ -7,10 +7,13 @@ use sweepsim::nalgebra::Vector3;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Pose};
 
-/// Poses with their axes.
-fn path(poses: &[([f64; 3], [f64; 3])]) -> Option<Path> {
+/// Poses with their axes. Where there is no path, the case is rejected, and another is tried in its place.
+fn path(poses: &[([f64; 3], [f64; 3])]) -> Result<Path, TestCaseError> {
     let poses = poses.iter().map(|(tip, axis)| Pose::new(*tip, *axis).ok());
-    Path::new(poses.collect::<Option<Vec<_>>>()?).ok()
+    let path = poses
+        .collect::<Option<Vec<_>>>()
+        .and_then(|poses| Path::new(poses).ok());
+    path.ok_or_else(|| TestCaseError::reject("no path"))
 }
 
 fn grid(cells: usize) -> Grid {
@@ -58,7 +61,7 @@ proptest! {
     /// Long moves with large turns, upright on the way or not.
     #[test]
     fn long_moves(number in 0..13usize, poses in prop::collection::vec((tip(8.0), axis()), 2..4)) {
-        let Some(path) = path(&poses) else { return Ok(()) };
+        let path = path(&poses)?;
         agree_along(number, &path, &grid(31))?;
     }
 
@@ -70,7 +73,7 @@ proptest! {
             let (tip, axis) = poses[poses.len() - 1];
             poses.push(([0, 1, 2].map(|k| tip[k] + step[k]), [axis[0] + turn[0], axis[1] + turn[1], axis[2]]));
         }
-        let Some(path) = path(&poses) else { return Ok(()) };
+        let path = path(&poses)?;
         agree_along(number, &path, &grid(41))?;
     }
 
@@ -84,7 +87,7 @@ proptest! {
             let axis: Vector3<f64> = (Vector3::from(first) + (Vector3::from(*axis) - Vector3::from(first)) * mix).normalize();
             ((-axis * (height + sink * n as f64)).into(), axis.into())
         }).collect();
-        let Some(path) = path(&poses) else { return Ok(()) };
+        let path = path(&poses)?;
         agree_along(number, &path, &grid(25))?;
     }
 
@@ -101,7 +104,7 @@ proptest! {
         let travel = Vector3::from(step) * 10f64.powi(exponents[1]) + if along { from * 4.0 } else { Vector3::zeros() };
         let tips = [Vector3::zeros(), travel, travel + from * 2.0];
         let poses = [(tips[0].into(), from.into()), (tips[1].into(), to.into()), (tips[2].into(), to.into())];
-        let Some(path) = path(&poses) else { return Ok(()) };
+        let path = path(&poses)?;
         let (name, tool, _) = &tools()[number];
         // No line through the tips: charts alone need long for some of these.
         let grid = Grid::new([-9.93, -10.04], [10.0, 9.87], [19; 2]).expect("a grid");
@@ -122,7 +125,7 @@ proptest! {
         let first = [0, 1].map(|k| size * lean[k] + off * aside[k]);
         let last = [0, 1].map(|k| share * size * lean[k] + off * aside[k]);
         let to = [0, 1, 2].map(|k| from[k] + way * step[k]);
-        let Some(path) = path(&[(from, [first[0], first[1], up]), (to, [last[0], last[1], up])]) else { return Ok(()) };
+        let path = path(&[(from, [first[0], first[1], up]), (to, [last[0], last[1], up])])?;
         let (name, tool, _) = &tools()[number];
         agree(name, tool, &path, &grid(41), TOLERANCE)?;
     }
@@ -137,7 +140,7 @@ proptest! {
         let share = if small { 0.05 } else { 1.0 };
         let to = [0, 1, 2].map(|k| from[k] + share * step[k]);
         let last = [first[0] + share * turn[0], first[1] + share * turn[1], first[2]];
-        let Some(path) = path(&[(from, first), (to, last)]) else { return Ok(()) };
+        let path = path(&[(from, first), (to, last)])?;
         agree_along(number, &path, &grid(150))?;
     }
 }
