@@ -1,4 +1,5 @@
-//! Tells the tests whether the shared data lies beside the project, so that those which need it are listed as ignored where it is absent.
+//! Tells the tests whether the shared data lies beside the project, so that those which need it are listed as ignored
+//! where it is absent.
 
 use std::path::Path;
 

@@ -14,7 +14,8 @@ fn tool(segments: Vec<ProfileSegment>) -> Tool {
     Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"))
 }
 
-/// A pilot of radius 2, a concave quarter circle of radius 6 about `(8, 2)`, and a body of radius 8: corners at every joint but none smooth.
+/// A pilot of radius 2, a concave quarter circle of radius 6 about `(8, 2)`, and a body of radius 8: corners at every
+/// joint but none smooth.
 #[must_use]
 pub fn concave() -> Tool {
     scaled_concave(1.0)

@@ -52,11 +52,13 @@ enum Command {
         #[arg(long)]
         store: bool,
     },
-    /// Compares exact dexels with the tool sampled in time, on the paper's examples, and draws the plots of docs/accuracy.md: takes many minutes.
+    /// Compares exact dexels with the tool sampled in time, on the paper's examples, and draws the plots of
+    /// docs/accuracy.md: takes many minutes.
     Study {
         /// Only examples whose names contain this; tables and plots of the docs are then left as they are.
         filter: Option<String>,
-        /// Seconds that one run of the sampler may take, unless that is less than twice the time of the exact simulation.
+        /// Seconds that one run of the sampler may take, unless that is less than twice the time of the exact
+        /// simulation.
         #[arg(long, default_value_t = 20.0)]
         limit: f64,
         /// Only draws the plots anew, from docs/accuracy.csv.
@@ -98,17 +100,18 @@ enum Command {
         /// The names of crates [default: all].
         crates: Vec<String>,
     },
-    /// Opens the report of a faulty program in headless Chromium, and uses it by mouse and keyboard, on a phone and without WebGL.
+    /// Opens the report of a faulty program in headless Chromium, and uses it by mouse and keyboard, on a phone and
+    /// without WebGL.
     Browser {
         /// Takes the screenshots of the docs anew.
         #[arg(long)]
         screenshots: bool,
     },
-    /// Runs a job in shards on a Slurm of one node, as docs/cluster.md describes it: one task is killed on the way, and the result compared with one run. Needs
-    /// Debian's packages slurmctld, slurmd, slurm-client and munge, and root.
+    /// Runs a job in shards on a Slurm of one node, as docs/cluster.md describes it: one task is killed on the way, and
+    /// the result compared with one run. Needs Debian's packages slurmctld, slurmd, slurm-client and munge, and root.
     Cluster,
-    /// Measures single shards of large runs, up to 10,000 x 10,000 dexels and 10,000,000 moves, one after the other: takes half an hour, 8 GiB of memory and 2 GB in the target
-    /// folder. Plots them in docs/pictures/shards.svg.
+    /// Measures single shards of large runs, up to 10,000 x 10,000 dexels and 10,000,000 moves, one after the other:
+    /// takes half an hour, 8 GiB of memory and 2 GB in the target folder. Plots them in docs/pictures/shards.svg.
     Shards {
         /// Only draws the plots of docs/shards.csv anew.
         #[arg(long)]

@@ -1,5 +1,5 @@
-//! `cargo xtask standalone`: compiles and runs the first example of every library's README, as a newcomer would: in a separate package outside the
-//! workspace that depends on that one crate.
+//! `cargo xtask standalone`: compiles and runs the first example of every library's README, as a newcomer would: in a
+//! separate package outside the workspace that depends on that one crate.
 
 use crate::workspace;
 use std::path::Path;

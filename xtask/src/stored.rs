@@ -1,4 +1,5 @@
-//! The stored dexels of `fixtures/dexels`: small texts that pin down large results (`fixtures/dexels/README.md` has the format).
+//! The stored dexels of `fixtures/dexels`: small texts that pin down large results (`fixtures/dexels/README.md` has the
+//! format).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,6 +1,7 @@
 //! A block with many balls taken out, as tri-dexels and as a mesh: prints times, memory and error as a line of JSON.
 //!
-//! `cargo run --release --example csg_of_many_balls -- [LINES ALONG X]`; `xtask/peers/peers_dexel.py` puts it beside others.
+//! `cargo run --release --example csg_of_many_balls -- [LINES ALONG X]`; `xtask/peers/peers_dexel.py` puts it beside
+//! others.
 
 use std::time::Instant;
 use sweepsim_dexel::{Dexels, End, Grid, Interval, Operation, Source, Stock, TriDexels};

@@ -1,8 +1,9 @@
 //! Compares two sets of dexels, end by end and in total.
 //!
-//! Distances are measured along normals: each end is compared with the tangent plane of the other surface at the nearest end there.
-//! So a wall that is slightly displaced has a small deviation, even if ends on the same line are far apart. On flat faces the
-//! distance is exact; on faces with radius of curvature `r` the error is about `d²/2r` if the nearest end is `d` away.
+//! Distances are measured along normals: each end is compared with the tangent plane of the other surface at the
+//! nearest end there. So a wall that is slightly displaced has a small deviation, even if ends on the same line are far
+//! apart. On flat faces the distance is exact; on faces with radius of curvature `r` the error is about `d²/2r` if the
+//! nearest end is `d` away.
 
 use crate::dexels::Line;
 use crate::dexels::{Dexels, GridMismatch};
@@ -22,10 +23,11 @@ pub struct Deviation {
     pub line: u32,
     /// Number of the end on its line, from 0 going up.
     pub end: u32,
-    /// The distance of the end outside the target, negative inside. `None` if no end of the target that faces the same way is
-    /// within reach.
+    /// The distance of the end outside the target, negative inside. `None` if no end of the target that faces the same
+    /// way is within reach.
     pub distance: Option<f64>,
-    /// The surface area that the end represents: that of its cell divided by the cosine of its slope, at most a thousand cells.
+    /// The surface area that the end represents: that of its cell divided by the cosine of its slope, at most a
+    /// thousand cells.
     pub area: f64,
 }
 
@@ -111,7 +113,8 @@ impl Comparison {
         if area > 0.0 { sum / area } else { 0.0 }
     }
 
-    /// Areas by distance: below `limits[0]`, from there to below `limits[1]`, …, and from the last limit up. Limits are sorted.
+    /// Areas by distance: below `limits[0]`, from there to below `limits[1]`, …, and from the last limit up. Limits are
+    /// sorted.
     #[must_use]
     pub fn histogram(&self, limits: &[f64]) -> Vec<f64> {
         let mut areas = vec![0.0; limits.len() + 1];
@@ -124,8 +127,9 @@ impl Comparison {
 
 /// Compares dexels with those of a target.
 ///
-/// Each end of `dexels` is compared with the nearest end of `target` on its line and the eight around, if it is no further away than
-/// `reach` and faces the same way (their normals less than 90° apart). For a mesh as target see [`compare_with_mesh`].
+/// Each end of `dexels` is compared with the nearest end of `target` on its line and the eight around, if it is no
+/// further away than `reach` and faces the same way (their normals less than 90° apart). For a mesh as target see
+/// [`compare_with_mesh`].
 ///
 /// # Errors
 /// [`GridMismatch`] if the grids differ.
@@ -202,11 +206,12 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup) -> Result<Compa
     Ok(Comparison::sum(parts))
 }
 
-/// Compares dexels along three axes with a closed mesh directly, walls parallel to one of them included: each end with the nearest point of the mesh,
-/// however far it is.
+/// Compares dexels along three axes with a closed mesh directly, walls parallel to one of them included: each end with
+/// the nearest point of the mesh, however far it is.
 ///
-/// An end stands for the area of its cell times the cosine of its slope: the squares of the three cosines of a face add up to one, so that areas, means and
-/// histograms count no face twice. Volumes are the means of the three sets'. Deviations come by set, then by line.
+/// An end stands for the area of its cell times the cosine of its slope: the squares of the three cosines of a face add
+/// up to one, so that areas, means and histograms count no face twice. Volumes are the means of the three sets'.
+/// Deviations come by set, then by line.
 ///
 /// # Errors
 /// [`StockError`](crate::StockError): the mesh is not closed, or intersects itself.
@@ -331,7 +336,8 @@ mod tests {
         let sides: Vec<&Deviation> = found.deviations.iter().filter(|d| d.area < 0.02).collect();
         assert!(sides.len() > 10_000);
         for d in sides {
-            // Ends are at most half a cell's diagonal apart, on a radius of 5, or on the rim, where it is a disk that is nearest.
+            // Ends are at most half a cell's diagonal apart, on a radius of 5, or on the rim, where it is a disk that
+            // is nearest.
             let distance = d.distance.unwrap();
             assert!((0.09..0.11).contains(&distance) || distance.abs() < 1e-4, "{d:?}");
         }

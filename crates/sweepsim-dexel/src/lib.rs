@@ -1,8 +1,8 @@
 //! Dexel grids: exact intervals on parallel lines.
 //!
-//! A *dexel* is a line parallel to `z` with the intervals in which it lies inside material. A [`Grid`] places the lines and
-//! [`Dexels`] hold the intervals. Their [ends](End) carry the surface's normal and the cut that made them. [`cover`] turns
-//! signed [`Crossing`]s into intervals and audits them, so that a lost crossing does not go unnoticed.
+//! A *dexel* is a line parallel to `z` with the intervals in which it lies inside material. A [`Grid`] places the lines
+//! and [`Dexels`] hold the intervals. Their [ends](End) carry the surface's normal and the cut that made them.
+//! [`cover`] turns signed [`Crossing`]s into intervals and audits them, so that a lost crossing does not go unnoticed.
 //!
 //! [`IntervalSet`] is a set of intervals on a single line. [`TriDexels`] are dexels along all three axes; their
 //! [surface](TriDexels::surface) has sharp edges. [`compare`] measures how dexels differ from a target.

@@ -1,6 +1,7 @@
 //! Vectors of three numbers.
 
-/// Coordinates and lengths are no larger than this in any unit: areas, volumes and squares of distances are finite, with room for sums.
+/// Coordinates and lengths are no larger than this in any unit: areas, volumes and squares of distances are finite,
+/// with room for sums.
 pub(crate) const LARGEST: f64 = 1e12;
 
 pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

@@ -10,8 +10,8 @@ use crate::error::{FormatError, Problem};
 
 /// The size in bytes to which any entry may expand.
 const FREE_BYTES: u64 = 1 << 28;
-/// How many times its compressed size an entry may expand to beyond that. Text compresses 10 times, noise not at all; 1000 times is
-/// a decompression bomb, or an array of equal numbers.
+/// How many times its compressed size an entry may expand to beyond that. Text compresses 10 times, noise not at all;
+/// 1000 times is a decompression bomb, or an array of equal numbers.
 const MOST_EXPANSION: u64 = 100;
 
 /// Writes an archive without compression. The same content gives the same bytes.

@@ -18,7 +18,8 @@ const MAX_MESSAGE: usize = 8000;
 /// A file that cannot be read, understood or written.
 ///
 /// Its `Display` is one line, `file:line:column: what is wrong, and what was expected`, as far as each is known;
-/// [`FormatError::render`] adds the line of the file with the position marked, and [`FormatError::further`] has the other problems of a program.
+/// [`FormatError::render`] adds the line of the file with the position marked, and [`FormatError::further`] has the
+/// other problems of a program.
 #[derive(Debug)]
 pub struct FormatError(Box<Inner>);
 

@@ -34,8 +34,8 @@
 //! | dexels for regression tests, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
 //!
-//! Errors are [`FormatError`]s: one message with file, line, column, and what was expected. Files are written completely or not at all
-//! ([`AtomicFile`]). No input makes a reader panic.
+//! Errors are [`FormatError`]s: one message with file, line, column, and what was expected. Files are written
+//! completely or not at all ([`AtomicFile`]). No input makes a reader panic.
 
 mod archive;
 mod atomic;

@@ -1,6 +1,7 @@
 //! VTK's XML files, for ParaView: meshes as `.vtp`, dexels as lines in `.vtu`.
 //!
-//! The data follow the description uncompressed (`appended`, `raw`), each array after its length in bytes; little-endian.
+//! The data follow the description uncompressed (`appended`, `raw`), each array after its length in bytes;
+//! little-endian.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};

@@ -1,6 +1,7 @@
 //! From a job or an NC program to a verdict, in memory.
 //!
-//! A program in a string, judged: the tool is given in code, the stock is a block, and the part that is wanted a mesh in memory.
+//! A program in a string, judged: the tool is given in code, the stock is a block, and the part that is wanted a mesh
+//! in memory.
 //!
 //! ```
 //! use sweepsim_job::dexel::{Stock, TriangleSoup};
@@ -27,13 +28,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Request`] says what is wanted. [`Request::plan`] reads it: the [`Plan`] has the job, what was found in the program, and what nobody says and was
-//! guessed, each with its reason. [`Plan::run`] computes the [`Outcome`]: verdict, findings, part, and what each tool did. [`Outcome::write`] makes meshes,
-//! pictures and the page, and passes them to a folder or any other [`Sink`].
+//! A [`Request`] says what is wanted. [`Request::plan`] reads it: the [`Plan`] has the job, what was found in the
+//! program, and what nobody says and was guessed, each with its reason. [`Plan::run`] computes the [`Outcome`]:
+//! verdict, findings, part, and what each tool did. [`Outcome::write`] makes meshes, pictures and the page, and passes
+//! them to a folder or any other [`Sink`].
 //!
-//! Nothing is printed, no process is ended, and no state is shared between runs. Files are read where a request names them, and written where the caller
-//! says. A [`Monitor`] is told the progress and may cancel all of it ([an example](Plan::run)). The work is shared out among the threads of the current
-//! rayon pool; their number does not affect the results.
+//! Nothing is printed, no process is ended, and no state is shared between runs. Files are read where a request names
+//! them, and written where the caller says. A [`Monitor`] is told the progress and may cancel all of it ([an
+//! example](Plan::run)). The work is shared out among the threads of the current rayon pool; their number does not
+//! affect the results.
 //!
 //! | what | how |
 //! | --- | --- |

@@ -21,7 +21,8 @@ pub struct Body {
     pub solid: Tool,
 }
 
-/// A cutter with the shank and holder that move with it. Only the cutter removes material; the others must not touch any.
+/// A cutter with the shank and holder that move with it. Only the cutter removes material; the others must not touch
+/// any.
 ///
 /// ```
 /// use sweepsim_motion::{Assembly, BodyKind, Profile, ProfileSegment, Tool};

@@ -1,8 +1,8 @@
 //! Milling tools as exact B-spline boundaries, and their rational rigid motions.
 //!
-//! A [`Tool`] is a solid with patches and sharp edges; an [`Assembly`] adds a shank and a holder. A [`Path`] passes through [`Pose`]s by
-//! [`Move`]s, or [along](Path::along) a [`SplineMotion`]. It consists of [`Segment`]s: orientation and tip as Bernstein forms in `t`, which is all that
-//! solvers need.
+//! A [`Tool`] is a solid with patches and sharp edges; an [`Assembly`] adds a shank and a holder. A [`Path`] passes
+//! through [`Pose`]s by [`Move`]s, or [along](Path::along) a [`SplineMotion`]. It consists of [`Segment`]s: orientation
+//! and tip as Bernstein forms in `t`, which is all that solvers need.
 
 mod assembly;
 mod boundary;

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 use thiserror::Error;
 
-/// A placement of a tool: the tip (CL point), the unit vector from the tip towards the holder and, for tools that are not
-/// symmetric about their axis, the direction of their `x`.
+/// A placement of a tool: the tip (CL point), the unit vector from the tip towards the holder and, for tools that are
+/// not symmetric about their axis, the direction of their `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     tip: Vector3<f64>,
@@ -54,7 +54,8 @@ impl Pose {
         })
     }
 
-    /// A pose that also fixes the spin of the tool about its axis: its `x` points along the component of `side` across the axis.
+    /// A pose that also fixes the spin of the tool about its axis: its `x` points along the component of `side` across
+    /// the axis.
     ///
     /// # Errors
     /// [`PoseError`] if a number is not finite, the axis has no direction, or `side` has no component across it.

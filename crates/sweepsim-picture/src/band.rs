@@ -32,7 +32,8 @@ pub(crate) struct Band {
     triangles: Vec<u32>,
     near: Vec<f32>,
     surface: Vec<Surface>,
-    /// The number of times that a line of sight leaves the part, less the number of times that it enters; empty without sections.
+    /// The number of times that a line of sight leaves the part, less the number of times that it enters; empty without
+    /// sections.
     depth: Vec<i32>,
     /// Whether there is anything to see.
     is_empty: bool,
@@ -198,8 +199,9 @@ impl Band {
         surface
     }
 
-    /// If a line of sight leaves the closed part once more than it enters, it must have entered through a section. The space that the
-    /// sections leave is convex, so it entered through the last section that it meets, and nothing is in front of that.
+    /// If a line of sight leaves the closed part once more than it enters, it must have entered through a section. The
+    /// space that the sections leave is convex, so it entered through the last section that it meets, and nothing is in
+    /// front of that.
     fn cut_open(&mut self, scene: &Scene, camera: &Camera, at: [usize; 2]) -> bool {
         let index = self.index(at);
         let [x, y] = self.place(at.map(|n| n as f32));

@@ -6,14 +6,15 @@ use crate::view::View;
 
 /// A camera that sees the whole scene.
 ///
-/// Depth is a number that varies linearly across the image of a plane and grows towards the viewer: 1 / distance in perspective,
-/// [`FAR`] minus the distance in parallel projection.
+/// Depth is a number that varies linearly across the image of a plane and grows towards the viewer: 1 / distance in
+/// perspective, [`FAR`] minus the distance in parallel projection.
 pub(crate) struct Camera {
     eye: Vector,
     pub right: Vector,
     pub up: Vector,
     pub forward: Vector,
-    /// Half the image's width and height in the scene: at distance 1 in perspective, at any distance in parallel projection.
+    /// Half the image's width and height in the scene: at distance 1 in perspective, at any distance in parallel
+    /// projection.
     half: [f32; 2],
     orthographic: bool,
     /// The share of the image's width left free at the right.
@@ -43,8 +44,8 @@ impl Camera {
         // Horizontal even when looking straight down.
         let right = [-azimuth.sin() as f32, azimuth.cos() as f32, 0.0];
         let up = cross(right, forward);
-        // In camera axes every point must satisfy x − px ≤ h (z − pz) and its three mirror images: stand at the nearest position
-        // where all of them hold.
+        // In camera axes every point must satisfy x − px ≤ h (z − pz) and its three mirror images: stand at the nearest
+        // position where all of them hold.
         let free = (1.0 - 2.0 * kept(view.margin, 0.0, 0.4)) as f32;
         if view.orthographic {
             let level = Self::level(scene, [right, up, forward], shape.map(|n| n as f32), free);
@@ -107,7 +108,8 @@ impl Camera {
         }
     }
 
-    /// A point's position in the image, from −1 to 1 to the right and up; its depth; and its weight in perspective-correct interpolation.
+    /// A point's position in the image, from −1 to 1 to the right and up; its depth; and its weight in
+    /// perspective-correct interpolation.
     pub fn project(&self, p: Vector) -> [f32; 4] {
         let d = sub(p, self.eye);
         let z = dot(d, self.forward);
@@ -120,7 +122,8 @@ impl Camera {
         [x * (1.0 - self.aside) - self.aside, y, near, weight]
     }
 
-    /// The origin of the line of sight through a point of the image, and its direction, of length 1 along the camera's axis.
+    /// The origin of the line of sight through a point of the image, and its direction, of length 1 along the camera's
+    /// axis.
     pub fn sight(&self, x: f32, y: f32) -> [Vector; 2] {
         let x = (x + self.aside) / (1.0 - self.aside);
         let aside = add(scale(self.right, x * self.half[0]), scale(self.up, y * self.half[1]));
@@ -159,7 +162,8 @@ impl Camera {
         self.eye
     }
 
-    /// Pixels of a unit of the scene across the line of sight, at a distance along the axis, in an image `width` pixels wide.
+    /// Pixels of a unit of the scene across the line of sight, at a distance along the axis, in an image `width` pixels
+    /// wide.
     pub fn pixels(&self, distance: f32, width: f32) -> f32 {
         let half = if self.orthographic {
             self.half[0]

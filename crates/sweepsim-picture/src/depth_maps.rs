@@ -10,7 +10,8 @@ use rayon::prelude::*;
 const TILE: usize = 16;
 /// Maps that are looked up together.
 const LANES: usize = 8;
-/// Steps from a texel to the next, to which corners are rounded: whether a texel is inside a triangle is then decided in whole numbers.
+/// Steps from a texel to the next, to which corners are rounded: whether a texel is inside a triangle is then decided
+/// in whole numbers.
 const STEP: i32 = 256;
 /// The largest number of steps: products of differences stay below 2⁶³.
 const LIMIT: i32 = 1 << 29;
@@ -53,8 +54,8 @@ impl DepthMaps {
         2.0 / self.texels as f32
     }
 
-    /// The light that reaches a point: from above and from below the horizon, each the sum over its directions of the weight times the
-    /// share that gets through. Directions whose weight is not positive count nothing.
+    /// The light that reaches a point: from above and from below the horizon, each the sum over its directions of the
+    /// weight times the share that gets through. Directions whose weight is not positive count nothing.
     pub fn reaching(&self, p: Vector, bias: f32, weight: impl Fn(Vector) -> f32) -> [f32; 2] {
         let mut light = [0.0; 2];
         for (axes, maps) in self.lanes.iter().zip(self.maps.chunks(LANES)) {
@@ -69,7 +70,8 @@ impl DepthMaps {
         light
     }
 
-    /// The mean share of light that reaches a point. Where the first eight directions agree that all of it does, or nothing, the others aren't asked.
+    /// The mean share of light that reaches a point. Where the first eight directions agree that all of it does, or
+    /// nothing, the others aren't asked.
     pub fn mean_share(&self, p: Vector, bias: f32) -> f32 {
         let (mut sum, mut count) = (0.0, 0);
         for (axes, maps) in self.lanes.iter().zip(self.maps.chunks(LANES)) {
@@ -108,7 +110,8 @@ impl DepthMaps {
     }
 }
 
-/// What a coordinate across a map is multiplied by, and what is then added, to give the column or row; texel centres are whole numbers.
+/// What a coordinate across a map is multiplied by, and what is then added, to give the column or row; texel centres
+/// are whole numbers.
 fn across(texels: usize) -> [f32; 2] {
     let half = 0.5 * texels as f32;
     [0.99 * half, half - 0.5]
@@ -165,7 +168,8 @@ impl DepthMap {
         let [scale, middle] = across(texels);
         let seen = |p: &Vector| {
             let [right, up, towards] = axes.map(|axis| dot(*p, axis));
-            // The scene is in the unit ball, so that nothing is cut off; the least and the greatest whole numbers would overflow in differences.
+            // The scene is in the unit ball, so that nothing is cut off; the least and the greatest whole numbers would
+            // overflow in differences.
             let steps = |across: f32| ((STEP as f32 * (middle + scale * across)) as i32).clamp(-LIMIT, LIMIT);
             Corner {
                 at: [steps(right), steps(up)],

@@ -16,7 +16,8 @@ pub(crate) const BAND: usize = 16;
 pub(crate) const RIM: usize = 1;
 /// Fixed-point steps between neighbouring samples.
 pub(crate) const STEP: f32 = 256.0;
-/// A vertex in the image, in steps from the top left sample, with its depth, its interpolation weight, and the surface there.
+/// A vertex in the image, in steps from the top left sample, with its depth, its interpolation weight, and the surface
+/// there.
 pub(crate) struct ImagePoint {
     pub x: i64,
     pub y: i64,

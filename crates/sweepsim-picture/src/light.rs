@@ -192,7 +192,8 @@ fn around(sky: &DepthMaps, count: usize, p: Vector, n: Vector) -> Around {
     Around { sky, ground }
 }
 
-/// Groups vertices at the same point with nearly the same normal: the group of each vertex, and the first vertex of each group.
+/// Groups vertices at the same point with nearly the same normal: the group of each vertex, and the first vertex of
+/// each group.
 fn same_places(scene: &Scene) -> (Vec<u32>, Vec<usize>) {
     // Only looked up, so its order does not matter.
     let mut known: HashMap<([u32; 3], [i8; 3]), u32> = HashMap::with_capacity(scene.positions.len());

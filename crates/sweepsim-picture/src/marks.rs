@@ -13,7 +13,8 @@ const INK: [u8; 3] = [38, 44, 54];
 /// The axes: name and colour.
 const AXES: [(&str, [u8; 3]); 3] = [("x", [176, 58, 46]), ("y", [47, 125, 70]), ("z", [40, 84, 160])];
 
-/// Draws the directions of the axes in the lower left corner of an image, and beside them a length, as long as it is in the middle of the part.
+/// Draws the directions of the axes in the lower left corner of an image, and beside them a length, as long as it is in
+/// the middle of the part.
 pub(crate) fn draw(image: &mut Image, scene: &Scene, camera: &Camera) {
     let [width, height] = image.size().map(|n| n as f32);
     let size = height.min(0.75 * width);
@@ -64,8 +65,8 @@ pub(crate) fn draw(image: &mut Image, scene: &Scene, camera: &Camera) {
     write(image, &format!("{length} mm"), [left, base - 1.9 * text], text, INK);
 }
 
-/// The longest length of the form 1, 2 or 5 × 10ⁿ that takes at most so many pixels, in the mesh's units and in pixels. `radius` is the
-/// mesh's size for a unit of the scene, `scale` the pixels of such a unit.
+/// The longest length of the form 1, 2 or 5 × 10ⁿ that takes at most so many pixels, in the mesh's units and in pixels.
+/// `radius` is the mesh's size for a unit of the scene, `scale` the pixels of such a unit.
 fn round_length(radius: f64, scale: f32, most: f32) -> Option<(f64, f32)> {
     let longest = radius * f64::from(most) / f64::from(scale);
     if !(1e-9..1e12).contains(&longest) {

@@ -29,7 +29,8 @@ impl Axis {
     }
 }
 
-/// A plane across an axis. Everything in front of it, as seen by the viewer, is removed; where it cuts the part, the inside shows.
+/// A plane across an axis. Everything in front of it, as seen by the viewer, is removed; where it cuts the part, the
+/// inside shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CuttingPlane {
     /// The axis that the plane is perpendicular to.
@@ -65,7 +66,8 @@ impl<'a> Drawing<'a> {
 
     /// Colours the mesh by a value per vertex, on a scale from `-range` to `range` (see [`legend`](crate::legend)).
     ///
-    /// A vertex whose value is NaN or missing is dark grey. An empty slice leaves the mesh coloured by what made its faces.
+    /// A vertex whose value is NaN or missing is dark grey. An empty slice leaves the mesh coloured by what made its
+    /// faces.
     #[must_use]
     pub fn values(self, values: &'a [f32], range: f32) -> Self {
         Self { values, range, ..self }
@@ -77,7 +79,8 @@ impl<'a> Drawing<'a> {
         Self { sections, ..self }
     }
 
-    /// Draws a tool as well, in a colour of its own: closed, like the part. Sections do not cut it, and the camera does not move back for it.
+    /// Draws a tool as well, in a colour of its own: closed, like the part. Sections do not cut it, and the camera does
+    /// not move back for it.
     #[must_use]
     pub fn tool(self, tool: &'a Mesh) -> Self {
         Self {
@@ -86,8 +89,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Places the camera and the ground as for a part that fills a box, given by its lowest and highest corner. So pictures of a part
-    /// that changes have the same point of view.
+    /// Places the camera and the ground as for a part that fills a box, given by its lowest and highest corner. So
+    /// pictures of a part that changes have the same point of view.
     ///
     /// A box that is not finite, or whose corners are not in order, is ignored.
     #[must_use]
@@ -127,8 +130,8 @@ pub struct View {
     pub margin: f64,
     /// The share of the width left free at the right for a [`legend`](crate::legend), from 0 to 0.5.
     pub legend: f64,
-    /// Whether the axes and a length are drawn in the lower left corner of images of at least 240 × 180 pixels. The length is true in the
-    /// middle of the part.
+    /// Whether the axes and a length are drawn in the lower left corner of images of at least 240 × 180 pixels. The
+    /// length is true in the middle of the part.
     pub axes: bool,
 }
 
@@ -166,8 +169,8 @@ impl View {
 
     /// Renders like [`draw`](Self::draw), for as long as the picture is wanted.
     ///
-    /// Before each of some hundreds of steps, `go_on` is told the share of the work that is done, from 0 to 1, by any thread; if it
-    /// breaks, the picture is given up and there is none.
+    /// Before each of some hundreds of steps, `go_on` is told the share of the work that is done, from 0 to 1, by any
+    /// thread; if it breaks, the picture is given up and there is none.
     #[must_use]
     pub fn draw_while(&self, drawing: &Drawing<'_>, go_on: &(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> Option<Image> {
         let size = self.size.map(|side| side.clamp(1, Image::MAX_SIDE));

@@ -1,4 +1,5 @@
-//! Writes a page of a million dexels, to see how large it is and how fast it opens: `--example waves -- waves.html 1000`.
+//! Writes a page of a million dexels, to see how large it is and how fast it opens:
+//! `--example waves -- waves.html 1000`.
 
 #[path = "../tests/it/waves.rs"]
 mod waves;

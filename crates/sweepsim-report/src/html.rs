@@ -24,7 +24,8 @@ pub(crate) fn json<T: serde::Serialize>(value: &T) -> String {
     text.replace('<', "\\u003c")
 }
 
-/// A length, area or volume for people: about four significant digits, without zeros at the end, with thousands separators.
+/// A length, area or volume for people: about four significant digits, without zeros at the end, with thousands
+/// separators.
 ///
 /// ```
 /// use sweepsim_report::measure;

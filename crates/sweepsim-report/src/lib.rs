@@ -1,8 +1,9 @@
-//! Reports of milling simulations as one HTML file that needs no network: the verdict, findings, tables and plots as plain HTML, and a viewer of the part
-//! and of the program's course in WebGL.
+//! Reports of milling simulations as one HTML file that needs no network: the verdict, findings, tables and plots as
+//! plain HTML, and a viewer of the part and of the program's course in WebGL.
 //!
-//! This crate knows no sweep. A [`Page`] is filled with plain data (words, tables, [plots](Plot), [findings](Finding)); its [`Scene`] holds the part as
-//! [intervals on lines](DexelLayer), [tools](ToolShape), [solids](Solid) and the [course](Course) of the program. [`Page::html`] returns the file.
+//! This crate knows no sweep. A [`Page`] is filled with plain data (words, tables, [plots](Plot), [findings](Finding));
+//! its [`Scene`] holds the part as [intervals on lines](DexelLayer), [tools](ToolShape), [solids](Solid) and the
+//! [course](Course) of the program. [`Page::html`] returns the file.
 //!
 //! ```
 //! use sweepsim_report::{Area, DexelLayer, LayerEnd, Page, Scene, Verdict};
@@ -20,8 +21,9 @@
 //!
 //! # Size
 //!
-//! Heights are quantised to 16 bits within the extent of the scene (the page states the step), predicted by their neighbours, and compressed. A page never
-//! exceeds [`Page::most_bytes`]: if it would, normals are left out first, then moments of the course, then every second line, and the page says so.
+//! Heights are quantised to 16 bits within the extent of the scene (the page states the step), predicted by their
+//! neighbours, and compressed. A page never exceeds [`Page::most_bytes`]: if it would, normals are left out first, then
+//! moments of the course, then every second line, and the page says so.
 //!
 //! # Layout
 //!

@@ -46,8 +46,9 @@ pub struct DexelLayer {
 }
 
 impl DexelLayer {
-    /// Builds a layer line by line: `write` gets column and row, and appends the line's intervals `[lower, upper]` from the lowest up. Of a line with more
-    /// than 65,535 intervals, the lowest are kept; intervals with an end that is not finite are left out.
+    /// Builds a layer line by line: `write` gets column and row, and appends the line's intervals `[lower, upper]` from
+    /// the lowest up. Of a line with more than 65,535 intervals, the lowest are kept; intervals with an end that is not
+    /// finite are left out.
     pub fn new(area: Area, mut write: impl FnMut(usize, usize, &mut Vec<[LayerEnd; 2]>)) -> Self {
         let mut layer = Self {
             area,
@@ -119,7 +120,8 @@ impl KeyFrame {
         }
     }
 
-    /// Sets the material of a line from now on: its number (column times rows, plus row), and its intervals from the lowest up.
+    /// Sets the material of a line from now on: its number (column times rows, plus row), and its intervals from the
+    /// lowest up.
     pub fn push(&mut self, line: u32, intervals: impl IntoIterator<Item = [f64; 2]>) {
         let before = self.intervals.len();
         let finite = intervals
@@ -217,7 +219,8 @@ pub enum SolidKind {
 pub struct Solid {
     /// What it is.
     pub kind: SolidKind,
-    /// The set-up to which it belongs, from 0: an index of [`Scene::setups`] if there are any. `None`: it is always there.
+    /// The set-up to which it belongs, from 0: an index of [`Scene::setups`] if there are any. `None`: it is always
+    /// there.
     pub setup: Option<u16>,
     /// Corners.
     pub vertices: Vec<[f64; 3]>,

@@ -1,5 +1,6 @@
-//! The bisector of two plane curves: points equidistant from both. It is the curve of pairs of feet `(s, t)` whose normals meet
-//! at equal distances; two unknowns and one equation (Elber and Kim 1998), with the point itself found afterwards.
+//! The bisector of two plane curves: points equidistant from both. It is the curve of pairs of feet `(s, t)` whose
+//! normals meet at equal distances; two unknowns and one equation (Elber and Kim 1998), with the point itself found
+//! afterwards.
 //!
 //! `cargo run -p sweepsim-solve --example bisector`
 

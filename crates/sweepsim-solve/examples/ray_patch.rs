@@ -1,4 +1,5 @@
-//! Where does a ray meet a bicubic B-spline patch? Two planes through the ray make two equations in the patch's two parameters.
+//! Where does a ray meet a bicubic B-spline patch? Two planes through the ray make two equations in the patch's two
+//! parameters.
 //!
 //! `cargo run -p sweepsim-solve --example ray_patch`
 
@@ -20,8 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     let patch = BSpline::new(knots.to_vec(), 3, control.as_flattened().to_vec())?;
     let spline = |values: Vec<f64>| BSpline::new(knots.to_vec(), 1, values);
-    // The ray (0, 0.4, 0.1) + s (1, 0.1, 0.05), as two planes: n · (p − origin) = 0. A plane's equation is a spline whose coefficients are
-    // the control points' values.
+    // The ray (0, 0.4, 0.1) + s (1, 0.1, 0.05), as two planes: n · (p − origin) = 0. A plane's equation is a spline
+    // whose coefficients are the control points' values.
     let origin = [0.0, 0.4, 0.1];
     let normals = [[-0.1, 1.0, 0.0], [-0.05, 0.0, 1.0]];
     let planes = normals.map(|n| {

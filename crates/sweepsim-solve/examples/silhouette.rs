@@ -1,4 +1,5 @@
-//! The silhouette of a patch `z = h(x, y)` seen from a direction: where its normal is perpendicular to that direction, one equation in the plane.
+//! The silhouette of a patch `z = h(x, y)` seen from a direction: where its normal is perpendicular to that direction,
+//! one equation in the plane.
 //!
 //! `cargo run -p sweepsim-solve --example silhouette > silhouette.svg`
 

@@ -2,8 +2,8 @@
 //!
 //! `cargo run -p sweepsim-solve --example solve -- "x^2 + y^2 = 1" "y = x^3" --on x=-2..2,y=-2..2 --svg cubic.svg`
 //!
-//! As many equations as variables: points. One fewer: curves. One in three variables: a surface. `--tolerance 1e-6` sets that of curves and surfaces,
-//! `--boxes 100000` and `--seconds 5` limit the search.
+//! As many equations as variables: points. One fewer: curves. One in three variables: a surface. `--tolerance 1e-6`
+//! sets that of curves and surfaces, `--boxes 100000` and `--seconds 5` limit the search.
 
 use std::process::ExitCode;
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Where do two bicubic patches meet? Three equations in the four parameters give one or more arcs, in both parameter planes and in space.
+//! Where do two bicubic patches meet? Three equations in the four parameters give one or more arcs, in both parameter
+//! planes and in space.
 //!
 //! `cargo run -p sweepsim-solve --example surface_intersection`
 

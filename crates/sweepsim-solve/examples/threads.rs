@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p sweepsim-solve --features rayon --example threads -- 3`
 //!
-//! In time on a processor, as Linux counts it for each thread, so that other work on the machine does not count: that of one thread alone, and of the busier one of two, which is
-//! how long the work takes if neither waits for a processor.
+//! In time on a processor, as Linux counts it for each thread, so that other work on the machine does not count: that
+//! of one thread alone, and of the busier one of two, which is how long the work takes if neither waits for a
+//! processor.
 
 use sweepsim_solve::{CurveSolver, Enclosure, SurfaceSolver, System};
 

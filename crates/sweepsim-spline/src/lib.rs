@@ -1,8 +1,8 @@
 //! Multivariate tensor-product B-splines and Bernstein forms, rational or not, and their algebra.
 //!
 //! A geometric question becomes an equation between splines. This crate builds the equation: sums, products,
-//! derivatives and compositions of splines are splines again, as exact as `f64` allows, with bounds on their rounding errors.
-//! A solver then needs only bounds on their values, and these account for rounding.
+//! derivatives and compositions of splines are splines again, as exact as `f64` allows, with bounds on their rounding
+//! errors. A solver then needs only bounds on their values, and these account for rounding.
 //!
 //! # In ten lines
 //!
@@ -30,22 +30,24 @@
 //! | one piece, on `[0,1]ⁿ` | [`Bernstein`] (to R), [`BernsteinMap`] (to Rᵐ) | [`RationalBernstein`] |
 //! | many pieces, on any box | [`BSpline`] over [`KnotVector`]s | [`RationalSpline`] |
 //!
-//! Curves, surfaces and volumes are the same type with one, two and three variables. In every grid of coefficients the first
-//! variable runs fastest (and, in [`BSpline`], the components of a control point before it).
+//! Curves, surfaces and volumes are the same type with one, two and three variables. In every grid of coefficients the
+//! first variable runs fastest (and, in [`BSpline`], the components of a control point before it).
 //!
 //! # Guarantees
 //!
-//! - **Bounds.** Each form carries [`error`](Bernstein::error), a bound on the distance of its coefficients from the results of exact
-//!   arithmetic. Enclosures, cones and linear bounds include it. The scheme and its proof are in
+//! - **Bounds.** Each form carries [`error`](Bernstein::error), a bound on the distance of its coefficients from the
+//!   results of exact arithmetic. Enclosures, cones and linear bounds include it. The scheme and its proof are in
 //!   `docs/error-bounds.md` of this crate; the tests compare every operation with exact rational arithmetic.
-//! - **No panics**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to store, gives a form
-//!   with an infinite error. Other operations return errors that say which knot, weight, axis or size was wrong.
-//!   (The slice functions of [`kernel`] document where they need slices of a certain length.)
-//! - **No hidden tolerances.** Where one is needed, it is an argument; where the question is *exact or not*, the error bounds decide.
+//! - **No panics**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to
+//!   store, gives a form with an infinite error. Other operations return errors that say which knot, weight, axis or
+//!   size was wrong. (The slice functions of [`kernel`] document where they need slices of a certain length.)
+//! - **No hidden tolerances.** Where one is needed, it is an argument; where the question is *exact or not*, the error
+//!   bounds decide.
 //!
 //! # More
 //!
-//! `examples/operations.rs` shows every operation. With the feature `serde` all types can be stored; they are checked when read.
+//! `examples/operations.rs` shows every operation. With the feature `serde` all types can be stored; they are checked
+//! when read.
 
 mod bernstein;
 mod bounds;

@@ -7,7 +7,8 @@
 /// The unit roundoff `u = 2⁻⁵³`: `fl(a ∘ b) = (a ∘ b)(1 + δ)`, `|δ| ≤ u`, unless the result underflows.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// The error of an operation whose result underflows, beyond the relative error `u`; generous (the exact bound is `2⁻¹⁰⁷⁵`).
+/// The error of an operation whose result underflows, beyond the relative error `u`; generous (the exact bound is
+/// `2⁻¹⁰⁷⁵`).
 pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// `γ_n = n u / (1 − n u)`: the relative error of `n` roundings in a row, rounded up; infinite when `n u ≥ 1/2`.

@@ -1,6 +1,8 @@
-//! Where the paper's boundary operator errs: dexels of one row as an SVG drawing, `cargo run -p sweepsim --example boundary_operators > operators.svg`.
+//! Where the paper's boundary operator errs: dexels of one row as an SVG drawing, `cargo run -p sweepsim --example
+//! boundary_operators > operators.svg`.
 //!
-//! A cutter with three fins tilts as it moves. What the count gives is blue; what the paper's Algorithm 2 takes for gaps in it, red.
+//! A cutter with three fins tilts as it moves. What the count gives is blue; what the paper's Algorithm 2 takes for
+//! gaps in it, red.
 
 use std::fmt::Write as _;
 use sweepsim::dexel::Grid;

@@ -1,4 +1,5 @@
-//! The section of a sweep by a plane, as an SVG drawing: `cargo run -p sweepsim --example section_by_a_plane > section.svg`.
+//! The section of a sweep by a plane, as an SVG drawing: `cargo run -p sweepsim --example section_by_a_plane >
+//! section.svg`.
 
 use sweepsim::prelude::*;
 use sweepsim::section;

@@ -1,4 +1,5 @@
-//! A tool from user-defined B-spline patches: a cutter with a rounded square section, rotated by a quarter turn along its path.
+//! A tool from user-defined B-spline patches: a cutter with a rounded square section, rotated by a quarter turn along
+//! its path.
 
 use sweepsim::dexel::Grid;
 use sweepsim::motion::{Path, Pose, Tool};

@@ -1,9 +1,10 @@
 //! Whether given intervals are the swept set of a line.
 //!
-//! Equal in number and ends: the same. Otherwise the two sets differ on some stretches, and the signed distance decides each:
-//! an answer is *wrong* if it calls a point tool that is farther outside than the tolerance, or air if it is deeper inside than the tolerance.
-//! Points within the tolerance of the boundary may be called either (a *film*): a line in a wall, a wall so steep that a shift of the line
-//! within the tolerance moves its end far, a gap about to close.
+//! Equal in number and ends: the same. Otherwise the two sets differ on some stretches, and the signed distance decides
+//! each: an answer is *wrong* if it calls a point tool that is farther outside than the tolerance, or air if it is
+//! deeper inside than the tolerance. Points within the tolerance of the boundary may be called either (a *film*): a
+//! line in a wall, a wall so steep that a shift of the line within the tolerance moves its end far, a gap about to
+//! close.
 
 use super::depth::Depth;
 use super::union::SweptLine;

@@ -1,9 +1,9 @@
 //! A vertical line through a placed tool.
 //!
-//! From the tip the line is `r + s e_z`. Then `ζ = r·o + s o_z` is linear in `s`, and `ρ² = |r × o + s e_z × o|²` quadratic: a piece of the
-//! outline gives a polynomial in `s` (a plane 1, a cylinder, cone or sphere 2, a torus 4), all of whose roots are *candidates*.
-//! Stretches between neighbouring candidates are classified at their midpoints, so that tangencies, double roots and
-//! roots on the wrong nappe of a cone do no harm.
+//! From the tip the line is `r + s e_z`. Then `ζ = r·o + s o_z` is linear in `s`, and `ρ² = |r × o + s e_z × o|²`
+//! quadratic: a piece of the outline gives a polynomial in `s` (a plane 1, a cylinder, cone or sphere 2, a torus 4),
+//! all of whose roots are *candidates*. Stretches between neighbouring candidates are classified at their midpoints, so
+//! that tangencies, double roots and roots on the wrong nappe of a cone do no harm.
 
 use super::motion::Placement;
 use super::outline::{Outline, Piece};

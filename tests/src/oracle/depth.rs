@@ -1,8 +1,9 @@
 //! The signed distance of a point from a swept volume: `D(P) = min over t of d(t, P)`.
 //!
-//! `d(t, ·)`, the signed distance from the tool at an instant, is 1-Lipschitz in space; so is `D`. Outside, `D` is the distance from the
-//! swept volume. Inside, `−D` is the radius of the largest ball about `P` that one placement holds: at most the distance from the boundary.
-//! Hence, where every tool point and line moves by at most `ε`, `D` changes by at most `ε`; and the boundary has `D = 0`.
+//! `d(t, ·)`, the signed distance from the tool at an instant, is 1-Lipschitz in space; so is `D`. Outside, `D` is the
+//! distance from the swept volume. Inside, `−D` is the radius of the largest ball about `P` that one placement holds:
+//! at most the distance from the boundary. Hence, where every tool point and line moves by at most `ε`, `D` changes by
+//! at most `ε`; and the boundary has `D = 0`.
 
 use super::minimum::minimise;
 use super::motion::Motion;
@@ -79,7 +80,8 @@ impl<'a> Depth<'a> {
         self.placed(&self.motion.at(segment, t), &p.into())
     }
 
-    /// The signed distance of `p` from the swept volume: branch and bound in time by the Lipschitz constant, then local refinement.
+    /// The signed distance of `p` from the swept volume: branch and bound in time by the Lipschitz constant, then local
+    /// refinement.
     #[must_use]
     pub fn at(&self, p: [f64; 3]) -> Nearest {
         let p = Vector3::from(p);
@@ -152,8 +154,8 @@ impl<'a> Depth<'a> {
         nearest
     }
 
-    /// The direction in which the distance grows fastest at `p`: the outward normal near the boundary. `None` where it is not
-    /// smooth on the scale `h` (a corner, a seam).
+    /// The direction in which the distance grows fastest at `p`: the outward normal near the boundary. `None` where it
+    /// is not smooth on the scale `h` (a corner, a seam).
     #[must_use]
     pub fn gradient(&self, p: [f64; 3], h: f64) -> Option<[f64; 3]> {
         let at = |axis: usize, step: f64| {

@@ -10,12 +10,14 @@ pub struct Minimum {
     pub at: f64,
     /// The value there.
     pub value: f64,
-    /// The smaller rise to a neighbouring sample of the last bracket: an estimate of the error, generous for a smooth minimum.
+    /// The smaller rise to a neighbouring sample of the last bracket: an estimate of the error, generous for a smooth
+    /// minimum.
     pub rise: f64,
 }
 
-/// Minimises `f` on `[a, b]` by repeated sampling of ever smaller brackets: robust to corners and to jumps to `+∞`, and to a
-/// second minimum that is higher by more than it varies on an eighth of the bracket. Stops when the last bracket varies by less than `fine`.
+/// Minimises `f` on `[a, b]` by repeated sampling of ever smaller brackets: robust to corners and to jumps to `+∞`, and
+/// to a second minimum that is higher by more than it varies on an eighth of the bracket. Stops when the last bracket
+/// varies by less than `fine`.
 pub fn minimise(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, fine: f64) -> Minimum {
     let mut best = Minimum {
         at: a,

@@ -1,15 +1,16 @@
 //! A brute-force oracle of swept volumes that shares no code with the solver.
 //!
-//! It takes only the public definitions (`Pose`, `Profile`) and the motion law, and knows nothing of envelopes, Bernstein
-//! forms or coverage counts. There are two independent ways to the truth, and tests use both:
+//! It takes only the public definitions (`Pose`, `Profile`) and the motion law, and knows nothing of envelopes,
+//! Bernstein forms or coverage counts. There are two independent ways to the truth, and tests use both:
 //!
-//! - [`SweptLine`]: *dense time sampling with local refinement.* At an instant the intersection of a vertical line with the
-//!   tool is exact ([`chords`]: roots of quadratics and quartics); the union over many instants is the swept set, whose
-//!   ends are then moved outwards by minimising over `t` around the instants that made them. It gives intervals, and says
-//!   where sampling cannot resolve them.
-//! - [`Depth`]: *signed distance.* `D(P) = min over t of d(t, P)`, with `d` the signed distance of `P` from the placed tool.
-//!   It is 1-Lipschitz in `P`, so `|D| ≤ ε` says that `P` is within `ε` of the boundary of the swept volume, whatever the slope of the
-//!   wall there. That is just what the tolerance of a sweep promises, so it is the judge where two interval sets differ.
+//! - [`SweptLine`]: *dense time sampling with local refinement.* At an instant the intersection of a vertical line with
+//!   the tool is exact ([`chords`]: roots of quadratics and quartics); the union over many instants is the swept set,
+//!   whose ends are then moved outwards by minimising over `t` around the instants that made them. It gives intervals,
+//!   and says where sampling cannot resolve them.
+//! - [`Depth`]: *signed distance.* `D(P) = min over t of d(t, P)`, with `d` the signed distance of `P` from the placed
+//!   tool. It is 1-Lipschitz in `P`, so `|D| ≤ ε` says that `P` is within `ε` of the boundary of the swept volume,
+//!   whatever the slope of the wall there. That is just what the tolerance of a sweep promises, so it is the judge
+//!   where two interval sets differ.
 //!
 //! [`compare`] puts both together.
 //!

@@ -1,8 +1,8 @@
 //! The pose at an instant of a move, from the written law alone.
 //!
-//! `tip(t) = (1−t) p₀ + t p₁`; the axis turns about `k = o₀ × o₁ / |o₀ × o₁|` by `α(t)` with `cos α = c/w`, `sin α = s/w`, where in
-//! Bernstein form of degree 2 `w = (1, cos θ/2, 1)`, `c = (1, cos θ/2, cos θ)`, `s = (0, sin θ/2, sin θ)`.
-//! A turn `θ` of more than 90° is two such arcs of `θ/2`, one for each half of the time.
+//! `tip(t) = (1−t) p₀ + t p₁`; the axis turns about `k = o₀ × o₁ / |o₀ × o₁|` by `α(t)` with `cos α = c/w`,
+//! `sin α = s/w`, where in Bernstein form of degree 2 `w = (1, cos θ/2, 1)`, `c = (1, cos θ/2, cos θ)`,
+//! `s = (0, sin θ/2, sin θ)`. A turn `θ` of more than 90° is two such arcs of `θ/2`, one for each half of the time.
 //!
 //! Moves of other laws are written as functions of time with sines and cosines: that is their definition.
 
@@ -89,9 +89,9 @@ impl Arc {
 
     /// A bound of how fast a point `p` at rest moves as seen from the tool, per unit of this arc's own time.
     ///
-    /// The tip's speed is constant. The angular speed is `α′ = 2 sin(θ/2)/w ≤ 4 sin(θ/2)/(1 + cos(θ/2))` since `w` is least at
-    /// `t = 1/2`, and the lever `|p − tip|` is convex in `t`, so largest at an end. Of a function of time the tip gets no farther from its
-    /// start than its speed says.
+    /// The tip's speed is constant. The angular speed is `α′ = 2 sin(θ/2)/w ≤ 4 sin(θ/2)/(1 + cos(θ/2))` since `w` is
+    /// least at `t = 1/2`, and the lever `|p − tip|` is convex in `t`, so largest at an end. Of a function of time the
+    /// tip gets no farther from its start than its speed says.
     #[must_use]
     pub fn speed_bound(&self, p: &Vector3<f64>) -> f64 {
         match &self.way {

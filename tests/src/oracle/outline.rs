@@ -133,7 +133,8 @@ impl Outline {
     }
 }
 
-/// The number of chords for a spline: for a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/4096)²/8`.
+/// The number of chords for a spline: for a curve of length `L` and curvature at most `κ` run through evenly, they are
+/// within `κ (L/4096)²/8`.
 const CHORDS: usize = 4096;
 
 /// The point of a spline at a part of its domain, by de Boor's algorithm.

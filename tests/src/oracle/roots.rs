@@ -1,8 +1,8 @@
 //! All real roots of a polynomial on an interval, by its derivatives.
 //!
-//! Between two consecutive roots of its derivative a polynomial is monotone, so it has one root there or none, and a change
-//! of sign tells. That recursion ends at a constant. Roots where the sign does not change (double roots) are given when the
-//! value at a root of the derivative is 0 to rounding.
+//! Between two consecutive roots of its derivative a polynomial is monotone, so it has one root there or none, and a
+//! change of sign tells. That recursion ends at a constant. Roots where the sign does not change (double roots) are
+//! given when the value at a root of the derivative is 0 to rounding.
 
 /// Coefficients of a polynomial of degree at most 4, of `1, x, x², …`.
 pub type Polynomial = [f64; 5];

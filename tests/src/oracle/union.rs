@@ -6,7 +6,8 @@ use super::motion::{Arc, Motion};
 use super::outline::Outline;
 use nalgebra::Vector3;
 
-/// How often the time between two samples with different numbers of chords is halved: ends at which a chord vanishes are as exact as that time.
+/// How often the time between two samples with different numbers of chords is halved: ends at which a chord vanishes
+/// are as exact as that time.
 const HALVINGS: u32 = 40;
 /// How often it is halved where a chord is so short that it does not overlap with itself one sample later.
 const HALVINGS_TORN: u32 = 5;
@@ -184,7 +185,8 @@ impl Sampler<'_> {
         } else {
             [-span.high, -span.low]
         };
-        // A chord counts if it overlaps what is known of the span, which reaches down to `reach`, or all but touches it.
+        // A chord counts if it overlaps what is known of the span, which reaches down to `reach`, or all but touches
+        // it.
         let end = |chords: &[[f64; 2]], reach: f64| -> f64 {
             let turned = chords.iter().map(|c| if sign > 0.0 { *c } else { [-c[1], -c[0]] });
             let overlapping = turned.filter(|c| c[1] >= reach - TOUCHING && c[0] <= top);
@@ -197,8 +199,9 @@ impl Sampler<'_> {
         for k in 0..values.len() {
             let value = |i: Option<usize>| i.and_then(|i| values.get(i)).copied().unwrap_or(f64::INFINITY);
             let (left, right) = (value(k.checked_sub(1)), value(Some(k + 1)));
-            // Between this sample and its neighbours the end gains less than it differs over two samples: a parabola that is level at
-            // both ends of a step dips by an eighth of its second difference, which shows two samples away.
+            // Between this sample and its neighbours the end gains less than it differs over two samples: a parabola
+            // that is level at both ends of a step dips by an eighth of its second difference, which shows two samples
+            // away.
             let further = value(k.checked_sub(2)).max(value(Some(k + 2)));
             let gain = left.max(right).max(further) - values[k];
             // The end of one arc and the start of the next are the same pose up to rounding.

@@ -51,7 +51,8 @@ fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// The crates that are built on this machine, as cargo describes them without a network: those for other systems need not have been fetched.
+/// The crates that are built on this machine, as cargo describes them without a network: those for other systems need
+/// not have been fetched.
 fn packages() -> Vec<Value> {
     let version = Command::new("rustc").arg("-vV").output().expect("a compiler");
     let version = String::from_utf8(version.stdout).expect("UTF-8");
@@ -95,7 +96,8 @@ fn locked() -> Vec<(String, String, Option<String>)> {
     text.split("[[package]]\n").skip(1).map(entry).collect()
 }
 
-/// Whether an expression can be met by permissive licences alone. `AND` binds more closely than `OR`, and `/` is an old `OR`.
+/// Whether an expression can be met by permissive licences alone. `AND` binds more closely than `OR`, and `/` is an old
+/// `OR`.
 fn permissive(expression: &str) -> bool {
     fn alternatives<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a str>>) -> bool {
         let mut found = false;

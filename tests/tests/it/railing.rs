@@ -1,8 +1,9 @@
-//! The paper's hand-railing (`fixtures/jobs/railing.ron`): its gouge, where it is, how deep, and by which moves, against the tool placed at many times; and
-//! the same rail without the fault.
+//! The paper's hand-railing (`fixtures/jobs/railing.ron`): its gouge, where it is, how deep, and by which moves,
+//! against the tool placed at many times; and the same rail without the fault.
 //!
-//! The judge knows the rail as what it is: a section that is the same all along a curve of lines and arcs. So the depth of a point is its distance from
-//! the section's outline within the section, and the tool is a body of revolution that either contains the point or not.
+//! The judge knows the rail as what it is: a section that is the same all along a curve of lines and arcs. So the depth
+//! of a point is its distance from the section's outline within the section, and the tool is a body of revolution that
+//! either contains the point or not.
 
 use nalgebra::{Vector2, Vector3};
 use std::ops::ControlFlow;
@@ -14,7 +15,8 @@ use sweepsim_dexel::Grid;
 use sweepsim_formats::Job;
 use sweepsim_motion::{Path, Tool};
 
-/// The rail, as `xtask/src/generate/railing.rs` describes it: radius and angle of its easings, the length of its level ends, its whole length.
+/// The rail, as `xtask/src/generate/railing.rs` describes it: radius and angle of its easings, the length of its level
+/// ends, its whole length.
 const EASING: f64 = 60.0;
 const RISE: f64 = std::f64::consts::PI / 6.0;
 const LEVEL: f64 = 14.0;

@@ -1,7 +1,9 @@
-//! A tool of a free-form surface, the router bit of `fixtures/tools`: its sweep against unions of placements that stand still.
+//! A tool of a free-form surface, the router bit of `fixtures/tools`: its sweep against unions of placements that stand
+//! still.
 //!
-//! A placement that stands still needs no envelope: its crossings are those of its two caps. So the union of many of them is another way to
-//! the volume, from below: none may stick out, and what the union lacks must vanish with the square of their distance in time.
+//! A placement that stands still needs no envelope: its crossings are those of its two caps. So the union of many of
+//! them is another way to the volume, from below: none may stick out, and what the union lacks must vanish with the
+//! square of their distance in time.
 
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::path::Path as FilePath;
@@ -41,8 +43,8 @@ fn swept(tool: &Tool, poses: Vec<Pose>, grid: &Grid, method: Method) -> Dexels {
     swept.volume
 }
 
-/// The pose at a part of the way, with its whole orientation (the bit is only almost symmetric): the angle of a rational arc of less than
-/// 90°, the tip on a line.
+/// The pose at a part of the way, with its whole orientation (the bit is only almost symmetric): the angle of a
+/// rational arc of less than 90°, the tip on a line.
 fn between(a: &Pose, b: &Pose, t: f64) -> Pose {
     let (o, p) = (Vector3::from(a.axis()), Vector3::from(b.axis()));
     let k = o.cross(&p);
@@ -75,7 +77,8 @@ fn placements_that_stand_still_fill_the_sweep_from_below() {
         }
         let mut outside = union.clone();
         outside.subtract_all(&whole).expect("one grid");
-        // Displacements of at most a hundredth of the tolerance, along walls of any steepness: in volume next to nothing.
+        // Displacements of at most a hundredth of the tolerance, along walls of any steepness: in volume next to
+        // nothing.
         assert!(outside.volume() < 1e-4, "{}", outside.volume());
         let mut lacking = whole.clone();
         lacking.subtract_all(&union).expect("one grid");

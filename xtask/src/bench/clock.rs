@@ -1,4 +1,5 @@
-//! Clocks: of the wall, and of the processor time that a thread has had, which other programs on the machine disturb less.
+//! Clocks: of the wall, and of the processor time that a thread has had, which other programs on the machine disturb
+//! less.
 
 use std::fs;
 use std::time::Instant;

@@ -27,9 +27,11 @@ const METHODS: [Method; 5] = [
 /// Counts of the last stored version: they depend on the compiler, but not on the machine.
 const STORED: &str = "xtask/instructions.csv";
 
-/// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process, and compares with the stored counts.
+/// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process, and compares
+/// with the stored counts.
 ///
-/// `filter`: only pieces of work whose names contain it. `store`: stores these counts, and leaves the others as they are.
+/// `filter`: only pieces of work whose names contain it. `store`: stores these counts, and leaves the others as they
+/// are.
 pub fn instructions(filter: Option<&str>, store: bool) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let file = workspace::root().join(STORED);

@@ -1,4 +1,5 @@
-//! The most memory that a run needs, of child processes: `sweepsim simulate` on programs of any length, and on grids of any size.
+//! The most memory that a run needs, of child processes: `sweepsim simulate` on programs of any length, and on grids of
+//! any size.
 
 use super::raster;
 use super::records::{Records, heading};

@@ -39,8 +39,8 @@ pub fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T,
     Ok(pool.map_err(|error| error.to_string())?.install(work))
 }
 
-/// Seconds of processor time of the shortest of several runs on the current thread. At least two unless they are long, since the first
-/// one has yet to allocate its memory.
+/// Seconds of processor time of the shortest of several runs on the current thread. At least two unless they are long,
+/// since the first one has yet to allocate its memory.
 pub fn shortest(run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
     shortest_by(Clock::seconds, run)
 }

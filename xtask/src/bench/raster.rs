@@ -6,8 +6,8 @@ use sweepsim_motion::{Path, Pose};
 /// Side of the square, in millimetres.
 pub const SIDE: f64 = 100.0;
 
-/// The poses of so many passes of so many moves, joined by short ones, none along the grid: over a surface from −4 to 4, on a square of `side`, with the
-/// axis up to `lean` radians from upright.
+/// The poses of so many passes of so many moves, joined by short ones, none along the grid: over a surface from −4 to
+/// 4, on a square of `side`, with the axis up to `lean` radians from upright.
 pub fn poses([passes, moves]: [usize; 2], side: f64, lean: f64) -> Result<Vec<Pose>, String> {
     let (sine, cosine) = 0.1_f64.sin_cos();
     let mut poses = Vec::with_capacity(passes * (moves + 1));
@@ -31,7 +31,8 @@ pub fn poses([passes, moves]: [usize; 2], side: f64, lean: f64) -> Result<Vec<Po
     Ok(poses)
 }
 
-/// The program of about so many moves, on the square of the usual side: neighbouring passes are as far apart as a tenth to a quarter of its moves is long.
+/// The program of about so many moves, on the square of the usual side: neighbouring passes are as far apart as a tenth
+/// to a quarter of its moves is long.
 pub fn program(moves: usize, lean: f64) -> Result<Path, String> {
     let passes = ((moves as f64).sqrt().round() as usize).max(2);
     let each = (moves / passes).max(1);

@@ -44,7 +44,8 @@ impl Records {
         }
     }
 
-    /// Notes a figure. Its ratio to that of the last day before today, or else to today's last; a dash if there is none.
+    /// Notes a figure. Its ratio to that of the last day before today, or else to today's last; a dash if there is
+    /// none.
     pub fn note(&mut self, name: &str, value: f64) -> String {
         let days = self.figures.entry(name.to_owned()).or_default();
         let before = days

@@ -224,7 +224,8 @@ const FIGURES: [(&str, Measure); 5] = [
     }),
 ];
 
-/// Measures the figures whose names contain `filter`, and writes `docs/performance.csv` and `docs/pictures/performance-*.svg`; others stay as they are stored.
+/// Measures the figures whose names contain `filter`, and writes `docs/performance.csv` and
+/// `docs/pictures/performance-*.svg`; others stay as they are stored.
 pub fn scaling(filter: Option<&str>) -> Result<(), String> {
     println!(
         "{:<12} {:<32} {:>9} {:>10}   (seconds on one thread, ratios, MiB)",

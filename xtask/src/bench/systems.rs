@@ -1,4 +1,5 @@
-//! The stored systems of equations, `../shared/data/systems`: what the solvers find, how long it takes, and what others took.
+//! The stored systems of equations, `../shared/data/systems`: what the solvers find, how long it takes, and what others
+//! took.
 
 use super::records::{Records, heading};
 use super::shortest;
@@ -8,8 +9,9 @@ use std::time::{Duration, Instant};
 use sweepsim_solve::{Cause, CurveSolver, Enclosure, PointSolver, Singular, SolveOptions, SurfaceSolver, System};
 use sweepsim_spline::Bernstein;
 
-/// Milliseconds that other solvers took for the stored systems of these names, as far as they were measured: IRIT's `mvar_lib` at its best setting, and
-/// a prototype in plain floating-point numbers. Taken on another day, on two shared cores.
+/// Milliseconds that other solvers took for the stored systems of these names, as far as they were measured: IRIT's
+/// `mvar_lib` at its best setting, and a prototype in plain floating-point numbers. Taken on another day, on two shared
+/// cores.
 const OTHERS: [(&str, f64, f64); 4] = [
     ("dense_cheb4_3d", 2.0, 4.7),
     ("cyclohexane", 42.0, 0.9),
@@ -25,7 +27,8 @@ const LONG: Duration = Duration::from_secs(1);
 /// The tolerance of curves and surfaces, relative to the widest side of the domain.
 const TOLERANCE: f64 = 1e-3;
 
-/// Branches at the singular point of curves that have one, by hand: a crossing, a cusp, an isolated point, and two nodes.
+/// Branches at the singular point of curves that have one, by hand: a crossing, a cusp, an isolated point, and two
+/// nodes.
 const BRANCHES: [(&str, usize); 5] = [
     ("c1_cross", 4),
     ("c1_cusp", 2),

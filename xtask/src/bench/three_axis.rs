@@ -66,7 +66,8 @@ pub fn cut(name: &str, cells: usize) -> Result<u64, String> {
         .map_err(|error| error.to_string())
 }
 
-/// The program with several tools on 1,000 × 1,000 lines, one thread: swept by closed forms and by charts, and removed from a block.
+/// The program with several tools on 1,000 × 1,000 lines, one thread: swept by closed forms and by charts, and removed
+/// from a block.
 pub fn three_axis() -> Result<(), String> {
     let mut records = Records::open();
     heading("Three axes: a raster of 3,049 moves, 1,000 × 1,000 lines, one thread, processor time");

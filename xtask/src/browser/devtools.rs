@@ -30,7 +30,8 @@ impl Browser {
     pub fn start(program: &Path, profile: &Path, flags: &[&str]) -> Result<Self, String> {
         let (their_in, to) = io::pipe().map_err(failed("pipe"))?;
         let (from, their_out) = io::pipe().map_err(failed("pipe"))?;
-        // A shell moves the pipes to the file descriptors that the protocol names: standard input and output arrive as 0 and 1.
+        // A shell moves the pipes to the file descriptors that the protocol names: standard input and output arrive as
+        // 0 and 1.
         let child = Command::new("sh")
             .args(["-c", "exec 3<&0 4>&1; exec \"$0\" \"$@\" </dev/null >/dev/null 2>&1"])
             .arg(program)

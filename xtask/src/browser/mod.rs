@@ -1,5 +1,5 @@
-//! `cargo xtask browser`: the report of a faulty program in headless Chromium. Everything a person does with the page is done here by its buttons, keys and
-//! sliders, and must show; the screenshots of the docs are taken on the way.
+//! `cargo xtask browser`: the report of a faulty program in headless Chromium. Everything a person does with the page
+//! is done here by its buttons, keys and sliders, and must show; the screenshots of the docs are taken on the way.
 
 mod devtools;
 mod walk;

@@ -1,5 +1,5 @@
-//! `cargo xtask shards`: time and memory of single shards of runs that are too large for one machine, one after the other, and what they add up to: the plots of
-//! docs/cluster.md.
+//! `cargo xtask shards`: time and memory of single shards of runs that are too large for one machine, one after the
+//! other, and what they add up to: the plots of docs/cluster.md.
 
 use super::sweepsim;
 use crate::plot::{Axis, Panel, Series, figure};
@@ -159,7 +159,8 @@ fn measure(sweepsim: &Path, job: &Path, out: &Path, shard: &str) -> Result<[f64;
     }
 }
 
-/// How long a run takes on so many cores, of which each computes eight shards: each of these begins anew. What merge takes is not in it.
+/// How long a run takes on so many cores, of which each computes eight shards: each of these begins anew. What merge
+/// takes is not in it.
 fn predicted(begin: f64, cut: f64, cores: f64) -> f64 {
     8.0 * begin + cut / cores
 }

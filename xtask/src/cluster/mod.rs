@@ -1,5 +1,5 @@
-//! `cargo xtask cluster`: the files of fixtures/cluster on a Slurm of one node on loopback, for `simulate` and for `verify`. One task is killed on its way, and what the merges leave is
-//! compared with one run each.
+//! `cargo xtask cluster`: the files of fixtures/cluster on a Slurm of one node on loopback, for `simulate` and for
+//! `verify`. One task is killed on its way, and what the merges leave is compared with one run each.
 
 #[cfg(test)]
 mod kubernetes;

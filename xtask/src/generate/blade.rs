@@ -1,7 +1,9 @@
-//! The third example of the paper (Figure 13): a blade of an impeller, carved by a ball end in 2,700 SLERP motions, seen in a rectangle about it.
+//! The third example of the paper (Figure 13): a blade of an impeller, carved by a ball end in 2,700 SLERP motions,
+//! seen in a rectangle about it.
 //!
-//! The blade is one of [`impeller`](super::impeller), out of a dome. The ball end runs in and out of the channels on both sides of
-//! it, first near the dome, then deeper and deeper down to the hub, in layers that all have the shape of the hub.
+//! The blade is one of [`impeller`](super::impeller), out of a dome. The ball end runs in and out of the channels on
+//! both sides of it, first near the dome, then deeper and deeper down to the hub, in layers that all have the shape of
+//! the hub.
 
 use super::impeller::{BLADES, CHANNEL_BALL, HUB, LENGTH, RADIUS, Revolved, SAFE, in_channel};
 use super::toolpath::{Placement, csv, decimals};

@@ -1,4 +1,5 @@
-//! A bracket to verify: a small part with a step, a slot, a round pocket and a groove, its program, and the same program with five faults.
+//! A bracket to verify: a small part with a step, a slot, a round pocket and a groove, its program, and the same
+//! program with five faults.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;

@@ -1,8 +1,10 @@
-//! The second example of the paper: the inside of half the body of the Utah teapot, cut by a ball end "through a point".
+//! The second example of the paper: the inside of half the body of the Utah teapot, cut by a ball end "through a
+//! point".
 //!
-//! The same [body](super::teapot), lying on its side, seen from within: the half with `z ≤ 0` is a cavity in a block. The centre of the ball follows the
-//! iso-parametric curves of the body's offset by the ball's radius, to and fro around the body, and then circles over its floor; the
-//! tool's axis always passes one point in front of the opening. So the rod behind the ball sweeps what lies between the wall and that point.
+//! The same [body](super::teapot), lying on its side, seen from within: the half with `z ≤ 0` is a cavity in a block.
+//! The centre of the ball follows the iso-parametric curves of the body's offset by the ball's radius, to and fro
+//! around the body, and then circles over its floor; the tool's axis always passes one point in front of the opening.
+//! So the rod behind the ball sweeps what lies between the wall and that point.
 //!
 //! Only `+ − × ÷ √` are used, so that every machine writes the same bytes.
 
@@ -14,8 +16,8 @@ use nalgebra::{Vector2, Vector3};
 const RADIUS: f64 = 2.5;
 const LENGTH: f64 = 60.0;
 
-/// Height of the opening's rim along `x`, and how far before it the common point of all axes is: the rod beyond that point is then clear of
-/// the block.
+/// Height of the opening's rim along `x`, and how far before it the common point of all axes is: the rod beyond that
+/// point is then clear of the block.
 const RIM: f64 = 2.25 * SCALE;
 const BEFORE: f64 = 6.0;
 
@@ -45,8 +47,8 @@ pub fn files() -> Vec<(&'static str, String)> {
 fn job() -> String {
     BlockJob {
         heading: "\
-// The inside of half the body of the Utah teapot, lying on its side, by a ball end whose axis always passes one point before the
-// opening: the paper's second example. Written by `cargo xtask generate` (xtask/src/generate/cavity.rs).",
+// The inside of half the body of the Utah teapot, lying on its side, by a ball end whose axis always passes one point
+// before the opening: the paper's second example. Written by `cargo xtask generate` (xtask/src/generate/cavity.rs).",
         stock: STOCK,
         cells: [180, 300],
         tool: format!("Ball(radius: {RADIUS:?}, length: {LENGTH:?})"),
@@ -69,7 +71,8 @@ fn through(centre: Vector3<f64>) -> Placement {
     }
 }
 
-/// The tool with its ball touching the body from within at `(x, radius)` of a profile with normal `outward`, at `u` around.
+/// The tool with its ball touching the body from within at `(x, radius)` of a profile with normal `outward`, at `u`
+/// around.
 fn touching((point, outward): (Vector2<f64>, Vector2<f64>), u: f64) -> Placement {
     let (circle, across) = around(u);
     let normal = Vector3::new(

@@ -1,9 +1,9 @@
 //! A radial impeller with seven blades, out of a cylinder, by two ball ends: our own, simple and analytic.
 //!
-//! About the `z` axis: the hub is the surface of revolution `z = hub(r)`, the blades' tops lie on `z = shroud(r)`, and the middle of
-//! a blade is a logarithmic spiral `φ = TWIST · ln(r / INNER)` seen from above. First a large ball end turns the shroud
-//! in one spiral. Then a small one runs in and out of each channel, fanned out between the blades, leaning outwards
-//! along the channel and, near a blade, over it, which makes the blades thinner towards their tops.
+//! About the `z` axis: the hub is the surface of revolution `z = hub(r)`, the blades' tops lie on `z = shroud(r)`, and
+//! the middle of a blade is a logarithmic spiral `φ = TWIST · ln(r / INNER)` seen from above. First a large ball end
+//! turns the shroud in one spiral. Then a small one runs in and out of each channel, fanned out between the blades,
+//! leaning outwards along the channel and, near a blade, over it, which makes the blades thinner towards their tops.
 
 use super::toolpath::{Accuracy, Placement, csv, decimals, sample};
 use libm::{cos, log, sin};
@@ -36,7 +36,8 @@ const ACCURACY: Accuracy = Accuracy { chord: 0.02, turn: 0.2 };
 const CHANNEL_STEP: f64 = 1.7;
 const SHROUD_STEP: f64 = 2.5;
 
-/// Tangent of the tool's lean: outwards along the channel (at its inner and at its outer end), over a blade, and outwards on the shroud.
+/// Tangent of the tool's lean: outwards along the channel (at its inner and at its outer end), over a blade, and
+/// outwards on the shroud.
 const LEAN_ALONG: [f64; 2] = [0.55, 0.15];
 const LEAN_OVER: f64 = 0.1;
 const LEAN_SHROUD: f64 = 0.25;
@@ -57,8 +58,8 @@ fn job() -> String {
     let edge = RADIUS + 0.5;
     format!(
         "\
-// A radial impeller with {BLADES} blades out of a cylinder: the shroud by a large ball end, the channels by a small one.
-// Written by `cargo xtask generate` (xtask/src/generate/impeller.rs).
+// A radial impeller with {BLADES} blades out of a cylinder: the shroud by a large ball end, the channels by a small
+// one. Written by `cargo xtask generate` (xtask/src/generate/impeller.rs).
 Job(
     units: Mm,
     tolerance: 1e-6,
@@ -84,7 +85,8 @@ pub(super) struct Revolved {
     pub rise: f64,
 }
 
-/// The hub falls from the boss to the back plate, the shroud from the eye to the outlet: parabolas with their vertex at the rim.
+/// The hub falls from the boss to the back plate, the shroud from the eye to the outlet: parabolas with their vertex at
+/// the rim.
 pub(super) const HUB: Revolved = Revolved { low: 3.0, rise: 11.0 };
 const SHROUD: Revolved = Revolved { low: 7.5, rise: 12.5 };
 
@@ -149,8 +151,8 @@ pub(super) fn blade(r: f64) -> f64 {
     TWIST * log(r / INNER)
 }
 
-/// The tool in the first channel: `across` from 0 (at the blade of `φ = 0` on the inside) to 1 (at the next), `along` from 0 at the
-/// inner end to 1 outside the stock. The ball rests on `floor`.
+/// The tool in the first channel: `across` from 0 (at the blade of `φ = 0` on the inside) to 1 (at the next), `along`
+/// from 0 at the inner end to 1 outside the stock. The ball rests on `floor`.
 pub(super) fn in_channel(floor: &Revolved, across: f64, along: f64) -> Placement {
     let (inner, outer) = (INNER, RADIUS + CHANNEL_BALL);
     let touched = inner + (outer - inner) * along;

@@ -1,13 +1,14 @@
-//! The fourth example of the paper (Figure 14): a wooden hand-railing, moulded by a router bit whose axis follows the rise of the rail, and the
-//! gouge in the concavity of its path.
+//! The fourth example of the paper (Figure 14): a wooden hand-railing, moulded by a router bit whose axis follows the
+//! rise of the rail, and the gouge in the concavity of its path.
 //!
-//! The rail runs level, eases upwards, rises, eases over and runs level again: a curve in the plane `y = 0` of lines and two arcs. Across it stands
-//! a section that is the same everywhere. The tip of the bit follows the curve beside the rail, on one side forth and on the other back, and its axis
-//! is the curve's normal. So the surface that it makes is the section along the curve, as long as the curve bends little: at a height `ζ` where the
-//! bit has radius `r` and slope `r′`, the neighbouring placements stay out of the rail if `κ r r′ < (1 − κ ζ)²`.
+//! The rail runs level, eases upwards, rises, eases over and runs level again: a curve in the plane `y = 0` of lines
+//! and two arcs. Across it stands a section that is the same everywhere. The tip of the bit follows the curve beside
+//! the rail, on one side forth and on the other back, and its axis is the curve's normal. So the surface that it makes
+//! is the section along the curve, as long as the curve bends little: at a height `ζ` where the bit has radius `r` and
+//! slope `r′`, the neighbouring placements stay out of the rail if `κ r r′ < (1 − κ ζ)²`.
 //!
-//! `railing.ron` takes the first easing on its first side too sharply, so that the bit runs deeper into the rail than the rail is thick there:
-//! the gouge. `railing-eased.ron` has no fault. Both have the same target.
+//! `railing.ron` takes the first easing on its first side too sharply, so that the bit runs deeper into the rail than
+//! the rail is thick there: the gouge. `railing-eased.ron` has no fault. Both have the same target.
 
 use super::router::outline;
 use super::toolpath::{Placement, csv, decimals};
@@ -58,8 +59,8 @@ impl Station {
     }
 }
 
-/// The curve from `x = −beyond` to `LENGTH + beyond`: the ends of its lines, and points of its arcs. The first easing has radius `first`; the lines are
-/// the same for any.
+/// The curve from `x = −beyond` to `LENGTH + beyond`: the ends of its lines, and points of its arcs. The first easing
+/// has radius `first`; the lines are the same for any.
 fn curve(first: f64, beyond: f64) -> Vec<Station> {
     let steps = (RISE / STEP + 0.5) as usize;
     // The corner that an arc replaces is this much of its radius away from both of its ends.
@@ -190,8 +191,8 @@ Job(
 /// The files, with their places under `fixtures/`.
 pub fn files() -> Vec<(&'static str, String)> {
     let gouged = "\
-// A hand-railing, moulded by a router bit that is one B-spline surface: the paper's fourth example, with the gouge in the concavity of its path.
-// `sweepsim verify` finds it; railing-eased.ron is without it.";
+// A hand-railing, moulded by a router bit that is one B-spline surface: the paper's fourth example, with the gouge in
+// the concavity of its path. `sweepsim verify` finds it; railing-eased.ron is without it.";
     let eased = "\
 // The hand-railing of railing.ron without its fault: the concavity of the path is eased as the rail is.";
     vec![
@@ -258,8 +259,8 @@ mod tests {
                 assert!((rise - 0.5 * (pair[0].rise + pair[1].rise)).abs() < 1e-12, "{pair:?}");
             }
         }
-        // Seen along the bisector of the corner, both arcs have their centres on it, at their radius over the cosine of half the rise from the corner. Their
-        // stations next to the middle are half a step from it.
+        // Seen along the bisector of the corner, both arcs have their centres on it, at their radius over the cosine of
+        // half the rise from the corner. Their stations next to the middle are half a step from it.
         let apart = [sin(0.5 * STEP), 1.0 / cos(0.5 * RISE) - cos(0.5 * STEP)];
         let expected = (EASING - SHARP) * apart[0].hypot(apart[1]);
         for number in [8, 9] {

@@ -1,5 +1,5 @@
-//! `fixtures/tools/router-bit.ron`, after the form tool of the paper (Figure 10): one bicubic B-spline surface of 13 × 14 control points, with a
-//! concave and a convex part.
+//! `fixtures/tools/router-bit.ron`, after the form tool of the paper (Figure 10): one bicubic B-spline surface of 13 ×
+//! 14 control points, with a concave and a convex part.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -32,7 +32,8 @@ const DISTINCT: usize = AROUND - 3;
 /// The control points at each height of the profile.
 fn points() -> impl Iterator<Item = [[f64; 3]; AROUND]> {
     let angle = |k: usize| TAU * (k % DISTINCT) as f64 / DISTINCT as f64;
-    // The middle of three neighbouring control points of a uniform cubic has weights 1, 4, 1 over 6: this makes its radius that of the profile.
+    // The middle of three neighbouring control points of a uniform cubic has weights 1, 4, 1 over 6: this makes its
+    // radius that of the profile.
     let wider = 3.0 / (2.0 + libm::cos(angle(1)));
     PROFILE.into_iter().map(move |[radius, height]| {
         std::array::from_fn(|k| {
@@ -49,7 +50,8 @@ fn knots() -> [Vec<i32>; 2] {
     [(-3..=AROUND as i32).collect(), up]
 }
 
-/// The bit with weights that change irregularly from one control point to the next, by up to 5 %: a tool of rational patches, for measurements.
+/// The bit with weights that change irregularly from one control point to the next, by up to 5 %: a tool of rational
+/// patches, for measurements.
 pub fn rational() -> Result<Tool, String> {
     let weight = |row: usize, k: usize| 1.0 + 0.05 * libm::sin((37 * row + 101 * (k % DISTINCT)).pow(2) as f64);
     let weights: Vec<f64> = (0..PROFILE.len() * AROUND)
@@ -94,7 +96,8 @@ fn rounded(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0
 }
 
-/// The bit's outline, `(radius, height)` from the tip to the top, as a polygon within `chord` of it: the middle curve of the surface's control points.
+/// The bit's outline, `(radius, height)` from the tip to the top, as a polygon within `chord` of it: the middle curve
+/// of the surface's control points.
 pub fn outline(chord: f64) -> Vec<[f64; 2]> {
     let spans = PROFILE.len() - 3;
     let mut points = vec![at(0, 0.0)];

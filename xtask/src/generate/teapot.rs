@@ -1,10 +1,10 @@
 //! The first example of the paper: the outside of half the body of the Utah teapot, cut by a flat end.
 //!
-//! The body is Martin Newell's: three cubic Bézier profiles, revolved by cubic quarter circles (which are no exact circles: that is
-//! how the teapot has been since 1975). It lies on its side: the axis of the body along `x`, the half with `z ≥ 0` is cut.
-//! The tool follows the iso-parametric curves around the body, the centre of its bottom on the surface, its axis
-//! along the normal. Where the surface is hollow (the rim, the foot) a flat bottom would cut into it; there the tool
-//! is lifted along its axis until it does not.
+//! The body is Martin Newell's: three cubic Bézier profiles, revolved by cubic quarter circles (which are no exact
+//! circles: that is how the teapot has been since 1975). It lies on its side: the axis of the body along `x`, the half
+//! with `z ≥ 0` is cut. The tool follows the iso-parametric curves around the body, the centre of its bottom on the
+//! surface, its axis along the normal. Where the surface is hollow (the rim, the foot) a flat bottom would cut into it;
+//! there the tool is lifted along its axis until it does not.
 //!
 //! Only `+ − × ÷ √` are used, so that every machine writes the same bytes.
 
@@ -18,7 +18,8 @@ pub(super) const PROFILE: [[[f64; 2]; 4]; 3] = [
     [[2.0, 0.75], [2.0, 0.3], [1.5, 0.075], [1.5, 0.0]],
 ];
 
-/// Newell's quarter circle: the inner control points of a cubic, in parts of the radius (0.5523 would be closest to a circle).
+/// Newell's quarter circle: the inner control points of a cubic, in parts of the radius (0.5523 would be closest to a
+/// circle).
 const QUARTER: f64 = 0.56;
 
 /// Millimetres per unit of Newell's.
@@ -75,7 +76,8 @@ fn job() -> String {
 pub(super) fn profile(parameter: f64) -> (Vector2<f64>, Vector2<f64>) {
     let piece = (parameter as usize).min(PROFILE.len() - 1);
     let (point, derivative) = cubic(PROFILE[piece].map(Vector2::from), parameter - piece as f64);
-    // The profile runs from the rim down to the foot: outside is on its left, seen with the radius to the right, the height up.
+    // The profile runs from the rim down to the foot: outside is on its left, seen with the radius to the right, the
+    // height up.
     let outward = Vector2::new(derivative.x, -derivative.y).normalize();
     (Vector2::new(point.y, point.x) * SCALE, outward)
 }
@@ -170,8 +172,8 @@ impl Body {
     }
 }
 
-/// The profile parameters of the passes: as far apart as the ridges between them allow. A flat bottom leaves `s²/8ρ` between
-/// two passes `s` apart on a profile of radius of curvature `ρ`.
+/// The profile parameters of the passes: as far apart as the ridges between them allow. A flat bottom leaves `s²/8ρ`
+/// between two passes `s` apart on a profile of radius of curvature `ρ`.
 fn passes() -> Vec<f64> {
     let (first, last) = (1.0, 3.0);
     let small = 1e-3;
@@ -218,8 +220,8 @@ fn path() -> Vec<Placement> {
     path
 }
 
-/// Along the foot and back along the rim, on the floor: three-axis moves that free both ends of the body. Ends on the side where the
-/// passes around it begin.
+/// Along the foot and back along the rim, on the floor: three-axis moves that free both ends of the body. Ends on the
+/// side where the passes around it begin.
 fn facing() -> Vec<Placement> {
     let rim_top = (0..=100).map(|k| profile(f64::from(k) / 100.0).0.x).fold(0.0, f64::max);
     let (foot, rim) = (-RADIUS - CLEARANCE, rim_top + RADIUS + CLEARANCE);

@@ -36,8 +36,8 @@ pub struct Accuracy {
     pub turn: f64,
 }
 
-/// Samples `curve` on `[from, to]`, dense where it bends: an interval is halved until its chord is within `accuracy` of the
-/// curve at a quarter, a half and three quarters of it, and its axes are close. Both ends belong to the samples.
+/// Samples `curve` on `[from, to]`, dense where it bends: an interval is halved until its chord is within `accuracy` of
+/// the curve at a quarter, a half and three quarters of it, and its axes are close. Both ends belong to the samples.
 pub fn sample(curve: &dyn Fn(f64) -> Placement, from: f64, to: f64, accuracy: Accuracy) -> Vec<Placement> {
     let mut samples = vec![curve(from)];
     halve(

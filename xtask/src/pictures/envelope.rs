@@ -1,4 +1,5 @@
-//! The paper's Figures 1, 3 and 5 in one picture: an envelope cut open, the curves of its section, and the ends of one dexel.
+//! The paper's Figures 1, 3 and 5 in one picture: an envelope cut open, the curves of its section, and the ends of one
+//! dexel.
 
 use super::figures::said;
 use crate::bench::cutter;

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use sweepsim_picture::Image;
 
-/// A picture of the docs, and the command that draws it. `FIXTURES` stands for the folder of the fixtures, `OUT` for that of the run.
+/// A picture of the docs, and the command that draws it. `FIXTURES` stands for the folder of the fixtures, `OUT` for
+/// that of the run.
 pub struct Run {
     pub name: &'static str,
     /// A job that is written first: its text, or a text of a fixture that is replaced in it.

@@ -16,7 +16,8 @@ use values::{area, camera, cells, length, limits, parsed, plane, section, size, 
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
-/// Exit status: 0 done; 1 `verify` found a fault; 2 bad input or usage; 3 done, but some dexels are unresolved (the report lists them); 130 interrupted.
+/// Exit status: 0 done; 1 `verify` found a fault; 2 bad input or usage; 3 done, but some dexels are unresolved (the
+/// report lists them); 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(name = "sweepsim", version, max_term_width = 100)]
 pub(crate) struct Arguments {
@@ -28,8 +29,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Moves the tools of a job through its stock, and writes the remaining part as dexels, mesh, picture and report.
     Simulate(RunOptions),
-    /// Judges a job's moves in their order: collisions of shanks and holders, rapids through material, fixtures, and gouges and excess against the
-    /// target. The same outputs as `simulate`; exit status 1 if anything is found.
+    /// Judges a job's moves in their order: collisions of shanks and holders, rapids through material, fixtures, and
+    /// gouges and excess against the target. The same outputs as `simulate`; exit status 1 if anything is found.
     Verify {
         #[command(flatten)]
         run: RunOptions,
@@ -46,16 +47,19 @@ pub(crate) enum Command {
     Inspect(InspectOptions),
     /// Converts a program, tool library, mesh or dexel file to another format, by the extensions.
     ///
-    /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to pictures (.png), and
-    /// dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf, Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and
-    /// text with one line per move (.txt), tool libraries to the tools of a job (.ron).
+    /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to
+    /// pictures (.png), and dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf,
+    /// Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and text with one line per move (.txt), tool libraries to the
+    /// tools of a job (.ron).
     Convert(ConvertOptions),
-    /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by distance.
+    /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by
+    /// distance.
     Compare(CompareOptions),
-    /// Joins the pieces that the shards of a run left: writes what the whole run would have written, to the byte but for times.
+    /// Joins the pieces that the shards of a run left: writes what the whole run would have written, to the byte but
+    /// for times.
     ///
-    /// Reads the job again, from the folder where the shards were run, if that exists. Exit status 2 if a piece is missing, comes twice, is damaged or
-    /// of another run.
+    /// Reads the job again, from the folder where the shards were run, if that exists. Exit status 2 if a piece is
+    /// missing, comes twice, is damaged or of another run.
     Merge(MergeOptions),
 }
 
@@ -81,8 +85,9 @@ pub(crate) struct RunOptions {
     /// The number of dexels, like 300x200, instead of the job's.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
-    /// The dexels that the mesh and the picture are made of: with `xyz` steep walls are as accurate as flat faces and edges are sharp, at
-    /// three times the cost of `z` [default: xyz, if the job allows it]. If `xyz` is given, `verify` looks for harm along x and y, too.
+    /// The dexels that the mesh and the picture are made of: with `xyz` steep walls are as accurate as flat faces and
+    /// edges are sharp, at three times the cost of `z` [default: xyz, if the job allows it]. If `xyz` is given,
+    /// `verify` looks for harm along x and y, too.
     #[arg(long, value_name = "AXES")]
     pub directions: Option<Directions>,
     /// Writes meshes of fewer triangles, nowhere further than this from the others, in millimetres.
@@ -91,12 +96,12 @@ pub(crate) struct RunOptions {
     /// The tolerance in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// The largest number of dexels along the side of a tile. Tiles are computed one by one, and are what shards consist of: another size changes
-    /// results, by less than the tolerance.
+    /// The largest number of dexels along the side of a tile. Tiles are computed one by one, and are what shards
+    /// consist of: another size changes results, by less than the tolerance.
     #[arg(long, value_name = "N", default_value_t = sweepsim::Options::TILE, value_parser = tile)]
     pub tile: usize,
-    /// Computes one shard of the run, from 0 of N, and leaves a piece for `merge`. `auto/N` takes the index from SLURM_ARRAY_TASK_ID,
-    /// JOB_COMPLETION_INDEX or AWS_BATCH_JOB_ARRAY_INDEX, `auto` also the number of shards.
+    /// Computes one shard of the run, from 0 of N, and leaves a piece for `merge`. `auto/N` takes the index from
+    /// SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX or AWS_BATCH_JOB_ARRAY_INDEX, `auto` also the number of shards.
     #[arg(long, value_name = "I/N", value_parser = shard::parse)]
     pub shard: Option<sweepsim_job::ShardNumber>,
     /// With --shard: does nothing if its piece is there, whole and of this run.
@@ -105,8 +110,8 @@ pub(crate) struct RunOptions {
     /// The number of threads [default: one per core]. It does not affect the results.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Also writes this many pictures of the workpiece while it is cut: frame-0001.png and so on, from the raw stock to the part, equally far
-    /// apart in time, with the tool in its place. `simulate` and `verify` only.
+    /// Also writes this many pictures of the workpiece while it is cut: frame-0001.png and so on, from the raw stock to
+    /// the part, equally far apart in time, with the tool in its place. `simulate` and `verify` only.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=9999))]
     pub frames: Option<u16>,
     /// Leaves the tool out of the frames.
@@ -134,8 +139,8 @@ pub(crate) struct JudgeOptions {
     /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub clearance: Option<f64>,
-    /// Takes shanks and holders larger by half the diagonal between dexels, and cutters in rapids and beside fixtures: what they touch beside a dexel is
-    /// found as well.
+    /// Takes shanks and holders larger by half the diagonal between dexels, and cutters in rapids and beside fixtures:
+    /// what they touch beside a dexel is found as well.
     #[arg(long)]
     pub sure: bool,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
@@ -224,8 +229,8 @@ pub(crate) struct CompareOptions {
     /// Distances up to this count as 0, in millimetres.
     #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance)]
     pub tolerance: f64,
-    /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres; or a job, whose limits count, by region if it has
-    /// regions [default: 0.1 each].
+    /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres; or a job, whose limits
+    /// count, by region if it has regions [default: 0.1 each].
     #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits)]
     pub limits: Option<DeviationLimits>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
@@ -260,8 +265,8 @@ pub(crate) struct GridOptions {
 /// How pictures are drawn.
 #[derive(Debug, Args)]
 pub(crate) struct ViewOptions {
-    /// The point of view: iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees; followed by `,orthographic` for a
-    /// parallel projection.
+    /// The point of view: iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees; followed by
+    /// `,orthographic` for a parallel projection.
     #[arg(long, value_name = "CAMERA", default_value = "iso", value_parser = camera, allow_hyphen_values = true)]
     pub camera: View,
     /// Cuts the part open at a plane, like z=5. May be given for several axes.

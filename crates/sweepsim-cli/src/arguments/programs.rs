@@ -11,7 +11,8 @@ use sweepsim_nc::{Controller, Format};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Programs")]
 pub(crate) struct DialectOptions {
-    /// The control that the program is written for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: as the program says].
+    /// The control that the program is written for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: as the
+    /// program says].
     #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
     pub controller: Option<String>,
     /// The machine: a machine.ron, or the name of a ready one, like trunnion-ac.
@@ -29,10 +30,12 @@ pub(crate) struct DialectOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "G-code that is written")]
 pub(crate) struct WritingOptions {
-    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: siemens for .mpf, heidenhain for .h, else linuxcnc].
+    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: siemens for .mpf,
+    /// heidenhain for .h, else linuxcnc].
     #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
     pub dialect: Option<String>,
-    /// The machine that it is for: a machine.ron, or the name of a ready one [default: none; tilted tools are vectors, where the control has them].
+    /// The machine that it is for: a machine.ron, or the name of a ready one [default: none; tilted tools are vectors,
+    /// where the control has them].
     #[arg(long, value_name = "FILE")]
     pub for_machine: Option<String>,
     /// Writes the coordinates of that machine's axes, without tip control.
@@ -50,7 +53,8 @@ pub(crate) struct ProgramOptions {
     /// The tools: a library of Fusion 360 (.json) or FreeCAD (.fctl), a tool table (.tbl), or a project of CAMotics.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub tools: Option<PathBuf>,
-    /// The stock: auto, block:X0,Y0,Z0,X1,Y1,Z1, or a mesh [default: auto, as the program says or a block around its path].
+    /// The stock: auto, block:X0,Y0,Z0,X1,Y1,Z1, or a mesh [default: auto, as the program says or a block around its
+    /// path].
     #[arg(long, value_name = "STOCK", value_parser = stock, allow_hyphen_values = true)]
     pub stock: Option<StockOption>,
     /// The design part: a mesh.
@@ -83,8 +87,8 @@ pub(crate) struct NewOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct InspectOptions {
-    /// A job (.ron), program (.nc .cls .csv …), tool library (.json .fctl .tbl), mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv
-    /// .dexels .npz).
+    /// A job (.ron), program (.nc .cls .csv …), tool library (.json .fctl .tbl), mesh (.stl .ply .glb .3mf .vtp) or
+    /// dexels (dexels.csv .dexels .npz).
     #[arg(value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     #[command(flatten)]

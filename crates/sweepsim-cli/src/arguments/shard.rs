@@ -50,7 +50,8 @@ fn found(variable: &dyn Fn(&str) -> Option<String>) -> Result<(&'static str, usi
 fn counted(index: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<usize, String> {
     let number = |name: &str| variable(name).and_then(|value| value.trim().parse::<usize>().ok());
     let all = match index {
-        // Only of an array that begins at 0 and has no gap: when a few tasks are run again, their number is not that of all shards.
+        // Only of an array that begins at 0 and has no gap: when a few tasks are run again, their number is not that of
+        // all shards.
         "SLURM_ARRAY_TASK_ID" => number("SLURM_ARRAY_TASK_COUNT").filter(|count| {
             number("SLURM_ARRAY_TASK_MIN") == Some(0)
                 && number("SLURM_ARRAY_TASK_MAX").is_some_and(|max| max + 1 == *count)

@@ -115,7 +115,8 @@ pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
     let merge = Merge::read(&options.pieces)?;
     let out = output_folder(options.out.as_deref(), merge.job());
     let out = absolute(&out).map_err(|error| Failure::message(format!("{}: {}", out.display(), io_reason(&error))))?;
-    // Names of files are as they were given there. Where that folder does not exist, as in another container, they are taken from here.
+    // Names of files are as they were given there. Where that folder does not exist, as in another container, they are
+    // taken from here.
     let there = merge.folder();
     if there.is_dir() && std::env::set_current_dir(there).is_err() {
         return Err(Failure::message(format!(

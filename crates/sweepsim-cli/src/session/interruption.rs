@@ -1,5 +1,5 @@
-//! Interruption by Ctrl-C, or by the system (SIGTERM, SIGHUP): the process ends at once, whatever it computes; a file that is being
-//! written is given up first, so that nothing half-written remains.
+//! Interruption by Ctrl-C, or by the system (SIGTERM, SIGHUP): the process ends at once, whatever it computes; a file
+//! that is being written is given up first, so that nothing half-written remains.
 
 use super::Failure;
 use indicatif::ProgressBar;
@@ -54,7 +54,8 @@ pub(crate) fn remove_at_end(bar: ProgressBar) {
     run().bar = Some(bar);
 }
 
-/// Writes a file, and names it among those that are complete. Fails if the run has been interrupted meanwhile, so that it ends.
+/// Writes a file, and names it among those that are complete. Fails if the run has been interrupted meanwhile, so that
+/// it ends.
 pub(crate) fn writing<T>(name: Option<&str>, write: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
     run().writing = true;
     let written = write();

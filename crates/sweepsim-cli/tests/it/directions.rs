@@ -44,8 +44,8 @@ fn walls_between_lines_are_where_they_are() {
     let exact = 20.0 * 10.0 * 6.0 - REMOVED;
     let off = (volume(&workdir, "tri/part.ply") - exact).abs();
     assert!(off < 1e-3 * exact, "{off}");
-    // Along z a wall is known to half the distance of lines; along y to where the line meets it, and its plane as well as normals
-    // are kept, to 6.5e-5.
+    // Along z a wall is known to half the distance of lines; along y to where the line meets it, and its plane as well
+    // as normals are kept, to 6.5e-5.
     for (mesh, least, most) in [("z/part.ply", 0.1, 0.25), ("tri/part.ply", 0.0, 1e-4)] {
         let mesh = read_mesh_file(&workdir.path(mesh)).unwrap();
         let faces = mesh.vertices.iter().zip(&mesh.normals);

@@ -5,8 +5,8 @@ use super::chunk::{Chunk, LINES, PackedInterval, is_normal};
 use crate::grid::Grid;
 use crate::intervals::{Interval, IntervalError, check_lengths, normalise};
 
-/// Builds [`Dexels`] from the first line to the last. Memory grows with the lines added, not with the grid, so a file that claims a huge
-/// grid but contains little needs little memory.
+/// Builds [`Dexels`] from the first line to the last. Memory grows with the lines added, not with the grid, so a file
+/// that claims a huge grid but contains little needs little memory.
 ///
 /// ```
 /// use sweepsim_dexel::{DexelsBuilder, Grid, Interval};

@@ -1,12 +1,13 @@
 //! Sixty-four neighbouring lines in one piece of memory.
 //!
-//! The intervals of all lines of a chunk are stored one after the other; a table of 65 numbers tells where each line begins. So a line
-//! costs 4 bytes, an interval its two ends, and a chunk without material one null pointer. A change of one line moves the
-//! rest of its chunk, a few kilobytes.
+//! The intervals of all lines of a chunk are stored one after the other; a table of 65 numbers tells where each line
+//! begins. So a line costs 4 bytes, an interval its two ends, and a chunk without material one null pointer. A change
+//! of one line moves the rest of its chunk, a few kilobytes.
 //!
-//! Ends refer to the move that made them by its index in the chunk's own table of moves, so that a [`Source`] takes 32 bits:
-//! first the index of the move, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24 at first,
-//! and one fewer whenever the table outgrows the rest: times are accurate to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for 65,536.
+//! Ends refer to the move that made them by its index in the chunk's own table of moves, so that a [`Source`] takes 32
+//! bits: first the index of the move, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24
+//! at first, and one fewer whenever the table outgrows the rest: times are accurate to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for
+//! 65,536.
 
 use super::packed::Packed;
 use super::segments::{CutSegment, LEAST_TIME, SegmentTable, Table};
@@ -122,8 +123,8 @@ impl Chunk {
         }));
     }
 
-    /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds intervals that are not
-    /// in the chunk yet.
+    /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds
+    /// intervals that are not in the chunk yet.
     fn make_room(&mut self, more: usize, out: &mut [PackedInterval]) {
         let full = |moves: &SegmentTable| moves.moves.len() + more > 1 << (32 - moves.time);
         let wasteful = self.moves.moves.len() > 64 + 4 * (self.pieces.len() + out.len());
@@ -242,7 +243,8 @@ impl Chunk {
         self.refill(pieces);
     }
 
-    /// Fills an empty chunk with stored lines, stretch by stretch: neighbouring lines of another chunk, or lines without material.
+    /// Fills an empty chunk with stored lines, stretch by stretch: neighbouring lines of another chunk, or lines
+    /// without material.
     pub fn fill_from<'a>(
         &mut self,
         (scratch, numbers): (&mut Vec<PackedInterval>, &mut Vec<u32>),

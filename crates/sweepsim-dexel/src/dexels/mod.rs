@@ -49,12 +49,14 @@ impl Operation {
     }
 }
 
-/// The intervals of material on every line of a grid. On each line they are sorted and disjoint, and have positive length.
+/// The intervals of material on every line of a grid. On each line they are sorted and disjoint, and have positive
+/// length.
 ///
-/// An interval takes 32 bytes, plus about 5 bytes per line; 64 neighbouring lines without material take 8 bytes in total. Heights are stored
-/// exactly, and [normals](crate::End::normal) to within 6.5e-5, with axis directions exact. The paths and segments of
-/// [sources](crate::Source) are exact. Their times are accurate to 2⁻²⁴ if at most 256 segments made the intervals of 64 neighbouring lines, and
-/// to 2⁻¹⁶ if 65,536 did; each of these segments takes another 8 bytes there.
+/// An interval takes 32 bytes, plus about 5 bytes per line; 64 neighbouring lines without material take 8 bytes in
+/// total. Heights are stored exactly, and [normals](crate::End::normal) to within 6.5e-5, with axis directions exact.
+/// The paths and segments of [sources](crate::Source) are exact. Their times are accurate to 2⁻²⁴ if at most 256
+/// segments made the intervals of 64 neighbouring lines, and to 2⁻¹⁶ if 65,536 did; each of these segments takes
+/// another 8 bytes there.
 #[derive(Clone, Debug)]
 pub struct Dexels {
     pub(super) grid: Grid,
@@ -90,7 +92,8 @@ impl Dexels {
         }
     }
 
-    /// Builds dexels line by line: `write` gets the number of a line and a list, to which it appends the line's intervals in any order.
+    /// Builds dexels line by line: `write` gets the number of a line and a list, to which it appends the line's
+    /// intervals in any order.
     ///
     /// Lines are built in parallel, in the current rayon pool.
     ///
@@ -186,11 +189,12 @@ impl Dexels {
         }
     }
 
-    /// Subtracts intervals from a line: sorted, with gaps between them. The normals of new ends are flipped, so that they point out of the remaining material.
+    /// Subtracts intervals from a line: sorted, with gaps between them. The normals of new ends are flipped, so that
+    /// they point out of the remaining material.
     ///
     /// # Errors
-    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
-    /// changed then.
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line.
+    /// Nothing is changed then.
     pub fn subtract(&mut self, index: usize, cut: &[Interval]) -> Result<(), IntervalError> {
         self.check_line(index)?;
         check_normal(cut)?;
@@ -203,8 +207,8 @@ impl Dexels {
     /// Adds intervals to a line: sorted, with gaps between them.
     ///
     /// # Errors
-    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
-    /// changed then.
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line.
+    /// Nothing is changed then.
     pub fn unite(&mut self, index: usize, more: &[Interval]) -> Result<(), IntervalError> {
         self.check_line(index)?;
         check_normal(more)?;
@@ -217,8 +221,8 @@ impl Dexels {
     /// Keeps only what a line has in common with intervals: sorted, with gaps between them.
     ///
     /// # Errors
-    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
-    /// changed then.
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line.
+    /// Nothing is changed then.
     pub fn intersect(&mut self, index: usize, with: &[Interval]) -> Result<(), IntervalError> {
         self.check_line(index)?;
         check_normal(with)?;

@@ -18,8 +18,8 @@ pub struct NearestEnd {
 impl Dexels {
     /// The interval end nearest to a point of the world. `None` if there is no material, or the point is not finite.
     ///
-    /// Of ends at the same distance, that of the lowest line and height is taken. The search looks at lines around the point, ring by ring,
-    /// until none further away can have a nearer end.
+    /// Of ends at the same distance, that of the lowest line and height is taken. The search looks at lines around the
+    /// point, ring by ring, until none further away can have a nearer end.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Source, Stock};
@@ -34,7 +34,8 @@ impl Dexels {
         self.nearest_of(point.into(), |_| true)
     }
 
-    /// The source of the surface at or near a point of the world: that of the nearest interval end, if one is within `reach`.
+    /// The source of the surface at or near a point of the world: that of the nearest interval end, if one is within
+    /// `reach`.
     #[must_use]
     pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {
         let nearest = self.nearest_end(point)?;

@@ -1,8 +1,8 @@
 //! Ends as they are stored: 16 bytes.
 //!
-//! The height is stored exactly. The normal is projected onto an octahedron, which is unfolded to a square: two numbers of 16
-//! bits, which turn it by at most 6.5e-5 and keep axis directions exact. The source is an index into the
-//! chunk's table of moves and a time, in 32 bits.
+//! The height is stored exactly. The normal is projected onto an octahedron, which is unfolded to a square: two numbers
+//! of 16 bits, which turn it by at most 6.5e-5 and keep axis directions exact. The source is an index into the chunk's
+//! table of moves and a time, in 32 bits.
 
 use crate::intervals::Endpoint;
 
@@ -96,8 +96,9 @@ impl Octahedral {
     }
 }
 
-/// A unit vector as two numbers of 16 bits, as [`Dexels`](crate::Dexels) store it: the point of the octahedron `|x| + |y| + |z| = 1`
-/// in its direction, with the lower half folded out over the upper, from −32767 to 32767. Directions turn by at most 6.5e-5.
+/// A unit vector as two numbers of 16 bits, as [`Dexels`](crate::Dexels) store it: the point of the octahedron
+/// `|x| + |y| + |z| = 1` in its direction, with the lower half folded out over the upper, from −32767 to 32767.
+/// Directions turn by at most 6.5e-5.
 ///
 /// ```
 /// use sweepsim_dexel::{pack_normal, unpack_normal};

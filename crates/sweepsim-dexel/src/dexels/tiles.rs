@@ -35,7 +35,8 @@ pub enum TilesError {
 }
 
 impl Grid {
-    /// Divides the grid into tiles of about equal size with at most `most` columns and rows: sorted by column, then row.
+    /// Divides the grid into tiles of about equal size with at most `most` columns and rows: sorted by column, then
+    /// row.
     ///
     /// ```
     /// use sweepsim_dexel::Grid;
@@ -163,7 +164,8 @@ impl Dexels {
         }))
     }
 
-    /// Copies stored lines: `from` tells of a line of `grid` which line of which dexels it is, and how many behind it go on from there.
+    /// Copies stored lines: `from` tells of a line of `grid` which line of which dexels it is, and how many behind it
+    /// go on from there.
     fn copied<'a>(grid: Grid, from: impl Fn(usize) -> (&'a Self, usize, usize) + Sync) -> Self {
         let mut dexels = Self::empty(grid);
         let chunks = dexels.chunks.par_iter_mut().enumerate();

@@ -126,8 +126,9 @@ fn remove(old: &[PackedInterval], cut: &[PackedInterval], tolerance: f64, out: &
 }
 
 impl Dexels {
-    /// Removes intervals on numbered lines as [`update`](Self::update) does, but leaves to faces what belongs to them: an end that moves by at
-    /// most `tolerance` keeps its normal and its source. A tool that slides along a face without cutting thus leaves it what it was.
+    /// Removes intervals on numbered lines as [`update`](Self::update) does, but leaves to faces what belongs to them:
+    /// an end that moves by at most `tolerance` keeps its normal and its source. A tool that slides along a face
+    /// without cutting thus leaves it what it was.
     ///
     /// # Errors
     /// [`IntervalError`]: an interval has no positive length, or the grid has no such line. Nothing is changed then.
@@ -174,9 +175,11 @@ impl Dexels {
         Ok(())
     }
 
-    /// Turns the crossings of numbered lines into intervals by [`cover`], and combines the material with them, in parallel.
+    /// Turns the crossings of numbered lines into intervals by [`cover`], and combines the material with them, in
+    /// parallel.
     ///
-    /// Returns the lines whose crossings fail the audit, sorted; their crossings are ignored, as are those beyond the grid.
+    /// Returns the lines whose crossings fail the audit, sorted; their crossings are ignored, as are those beyond the
+    /// grid.
     pub fn update_by_crossings(
         &mut self,
         operation: Operation,
@@ -186,8 +189,8 @@ impl Dexels {
         self.update_by_lists(operation, &[crossings], &[], same)
     }
 
-    /// As [`update_by_crossings`](Self::update_by_crossings), with crossings in several lists, of which a line may have some in each. Those of the lines
-    /// in `except`, which are sorted, are ignored.
+    /// As [`update_by_crossings`](Self::update_by_crossings), with crossings in several lists, of which a line may have
+    /// some in each. Those of the lines in `except`, which are sorted, are ignored.
     pub fn update_by_lists(
         &mut self,
         operation: Operation,
@@ -209,7 +212,8 @@ impl Dexels {
         failures
     }
 
-    /// Updates from numbered items by `run`, which does the operation: `read` turns all items of a line, which it may reorder, into intervals in normal form.
+    /// Updates from numbered items by `run`, which does the operation: `read` turns all items of a line, which it may
+    /// reorder, into intervals in normal form.
     fn update_by<T: Copy + Send + Sync>(
         &mut self,
         operation: Operation,

@@ -65,7 +65,8 @@ impl Frame {
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
-    /// A frame at a point. Its z axis points along `z`, its x axis along the part of `x` perpendicular to `z`. The vectors may have any length.
+    /// A frame at a point. Its z axis points along `z`, its x axis along the part of `x` perpendicular to `z`. The
+    /// vectors may have any length.
     ///
     /// # Errors
     /// [`FrameError`]: a number is not finite, `z` is zero, or `x` is parallel to it.

@@ -6,10 +6,11 @@ pub use frame::{Frame, FrameError};
 use std::ops::Range;
 use thiserror::Error;
 
-/// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).
+/// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a
+/// frame](Grid::in_frame).
 ///
-/// Positions, heights and normals of dexels are in the frame of their grid. [Stock](crate::Stock), [surfaces](crate::Dexels::surface) and
-/// meshes to compare with are in the world.
+/// Positions, heights and normals of dexels are in the frame of their grid. [Stock](crate::Stock),
+/// [surfaces](crate::Dexels::surface) and meshes to compare with are in the world.
 ///
 /// A grid may be a [tile](Grid::tile) of a larger one: its lines are then exactly those of the larger grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +19,8 @@ pub struct Grid {
     max: [f64; 2],
     cells: [usize; 2],
     frame: Frame,
-    /// Of a tile: the first column and row in the grid that the other fields describe, and the number of columns and rows.
+    /// Of a tile: the first column and row in the grid that the other fields describe, and the number of columns and
+    /// rows.
     tile: Option<[[usize; 2]; 2]>,
 }
 
@@ -90,7 +92,8 @@ impl Grid {
         &self.frame
     }
 
-    /// The part of the grid with these columns and rows, at the very same positions. `None` if it is empty or leaves the grid.
+    /// The part of the grid with these columns and rows, at the very same positions. `None` if it is empty or leaves
+    /// the grid.
     ///
     /// ```
     /// use sweepsim_dexel::Grid;

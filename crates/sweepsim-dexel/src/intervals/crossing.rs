@@ -1,9 +1,10 @@
 //! From signed crossings to intervals: the coverage count and its audit.
 //!
-//! Fix a line. Let `S` be the part of the strip of times `t` and heights `z` that the moving tool covers, and `c(z)` the number of
-//! connected components of `S` at height `z`. The swept volume meets the line exactly where `c ≥ 1`. Far below and far above, `c` is 0;
-//! each crossing says by how much `c` jumps, going up. So the jumps add up to 0 and no partial sum is negative. A crossing that is
-//! lost or found twice breaks this audit, unless a second error of opposite sign hides it.
+//! Fix a line. Let `S` be the part of the strip of times `t` and heights `z` that the moving tool covers, and `c(z)`
+//! the number of connected components of `S` at height `z`. The swept volume meets the line exactly where `c ≥ 1`. Far
+//! below and far above, `c` is 0; each crossing says by how much `c` jumps, going up. So the jumps add up to 0 and no
+//! partial sum is negative. A crossing that is lost or found twice breaks this audit, unless a second error of opposite
+//! sign hides it.
 
 use super::interval::{End, Interval, Source};
 use super::operations::merge;
@@ -30,20 +31,23 @@ pub struct AuditFailure {
     pub sum: i32,
     /// Lowest partial sum; must be 0.
     pub lowest: i32,
-    /// Height at which the lowest partial sum is reached, if it is negative; otherwise that of the highest crossing, where the sum should be 0. Not finite
-    /// only if a crossing's height is not.
+    /// Height at which the lowest partial sum is reached, if it is negative; otherwise that of the highest crossing,
+    /// where the sum should be 0. Not finite only if a crossing's height is not.
     pub z: f64,
 }
 
-/// Writes the intervals where at least one component covers a line, from its crossings, which may be put in another order.
+/// Writes the intervals where at least one component covers a line, from its crossings, which may be put in another
+/// order.
 ///
-/// Heights have some error, so consecutive crossings at most `same` apart form a group: the order of a coincident start and end is unknown,
-/// and a gap or a negative count between them means nothing. Intervals begin at the lowest and end at the highest crossing of a group.
-/// A chain of crossings can make a group longer than `same`; inside it the count continues from crossing to crossing, so no wall or gap
-/// thicker than `same` is lost. A `same` that is negative or no number counts as 0.
+/// Heights have some error, so consecutive crossings at most `same` apart form a group: the order of a coincident start
+/// and end is unknown, and a gap or a negative count between them means nothing. Intervals begin at the lowest and end
+/// at the highest crossing of a group. A chain of crossings can make a group longer than `same`; inside it the count
+/// continues from crossing to crossing, so no wall or gap thicker than `same` is lost. A `same` that is negative or no
+/// number counts as 0.
 ///
 /// # Errors
-/// [`AuditFailure`]: the jumps do not add up to 0, a sum between groups is negative, or a height is not finite. `intervals` is then empty.
+/// [`AuditFailure`]: the jumps do not add up to 0, a sum between groups is negative, or a height is not finite.
+/// `intervals` is then empty.
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     // Crossings at one height always form a group: no interval is without length.
     let same = same.max(0.0);
@@ -75,8 +79,8 @@ fn between(a: &Crossing, b: &Crossing, same: f64) -> Option<Interval> {
 /// The most crossings that are sorted by insertion.
 const FEW: usize = 24;
 
-/// What [`cover_any`] does for a few crossings of different heights, without a chain, that pass their audit: heights are sorted, and crossings stay where they
-/// are. `None` for all others.
+/// What [`cover_any`] does for a few crossings of different heights, without a chain, that pass their audit: heights
+/// are sorted, and crossings stay where they are. `None` for all others.
 fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -> Option<()> {
     intervals.clear();
     let mut heights = [(0.0_f64, 0_u8); FEW];
@@ -201,7 +205,8 @@ fn end(crossing: &Crossing) -> End {
     }
 }
 
-/// Counts from crossing to crossing. Where the order of crossings is wrong, the result has intervals or gaps that are too thin.
+/// Counts from crossing to crossing. Where the order of crossings is wrong, the result has intervals or gaps that are
+/// too thin.
 fn chain(group: &[Crossing], mut sum: i32, lower: &mut Option<End>, intervals: &mut Vec<Interval>) {
     for crossing in group {
         sum += i32::from(crossing.jump);
@@ -282,7 +287,8 @@ mod tests {
         }
     }
 
-    /// All lists of up to four crossings at three heights, with any `same`: what is not refused is sorted, and every interval has a length.
+    /// All lists of up to four crossings at three heights, with any `same`: what is not refused is sorted, and every
+    /// interval has a length.
     #[test]
     fn intervals_have_a_length_whatever_is_the_same() {
         let (heights, jumps) = ([-1.0, 0.0, 0.5], [-2_i8, -1, 1, 2]);
@@ -360,7 +366,8 @@ mod tests {
 
     #[test]
     fn crossings_at_one_height_have_no_order() {
-        // If a component ends where another begins, up to rounding, there is no gap. If one begins and ends there, there is no interval.
+        // If a component ends where another begins, up to rounding, there is no gap. If one begins and ends there,
+        // there is no interval.
         let ulp = f64::EPSILON;
         let mut crossings = [
             (0.0, 1),

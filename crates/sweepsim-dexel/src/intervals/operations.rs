@@ -1,7 +1,8 @@
 //! Set operations on sorted lists of intervals.
 //!
-//! Lists are in *normal form*: sorted, each interval of positive length, each gap of positive length. Every operation takes
-//! two lists in normal form and appends one to `out`, whose earlier content it leaves alone. They run in one pass.
+//! Lists are in *normal form*: sorted, each interval of positive length, each gap of positive length. Every operation
+//! takes two lists in normal form and appends one to `out`, whose earlier content it leaves alone. They run in one
+//! pass.
 
 use super::interval::{Endpoint, Interval};
 
@@ -93,7 +94,8 @@ pub(crate) fn normalise<E: Endpoint>(pieces: &mut Vec<Interval<E>>) {
     }
 }
 
-/// Fills gaps of at most `tolerance`, then drops intervals of at most `tolerance`: see [`IntervalSet::merged`](crate::IntervalSet::merged).
+/// Fills gaps of at most `tolerance`, then drops intervals of at most `tolerance`: see
+/// [`IntervalSet::merged`](crate::IntervalSet::merged).
 pub(crate) fn merge<E: Endpoint>(pieces: &mut Vec<Interval<E>>, tolerance: f64) {
     pieces.dedup_by(|next, last| {
         let join = next.lower.height() - last.upper.height() <= tolerance;

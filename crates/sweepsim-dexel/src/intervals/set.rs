@@ -5,8 +5,9 @@ use super::operations::{Run, difference, intersection, merge, normalise, union};
 
 /// A set of points on a line, as intervals in normal form: sorted, of positive length, with gaps between them.
 ///
-/// Sets that differ only in single points are equal: it does not matter whether an end belongs to its interval. Ends may be plain
-/// heights (`f64`), [ends with a normal and a source](crate::End), or any other [`Endpoint`]. Heights may be infinite.
+/// Sets that differ only in single points are equal: it does not matter whether an end belongs to its interval. Ends
+/// may be plain heights (`f64`), [ends with a normal and a source](crate::End), or any other [`Endpoint`]. Heights may
+/// be infinite.
 ///
 /// ```
 /// use sweepsim_dexel::IntervalSet;
@@ -115,11 +116,12 @@ impl<E: Endpoint> IntervalSet<E> {
         Ok(Self::from_intervals([range])?.difference(self))
     }
 
-    /// Removes features that are too thin to be significant: fills gaps of at most `tolerance`, then drops intervals of at most `tolerance`.
+    /// Removes features that are too thin to be significant: fills gaps of at most `tolerance`, then drops intervals of
+    /// at most `tolerance`.
     ///
-    /// Every interval longer than the tolerance is contained in the result, and every gap longer than the tolerance remains a gap or becomes part
-    /// of one, however many thin intervals are next to it. Repeating the operation changes nothing. A negative or NaN tolerance
-    /// changes nothing either.
+    /// Every interval longer than the tolerance is contained in the result, and every gap longer than the tolerance
+    /// remains a gap or becomes part of one, however many thin intervals are next to it. Repeating the operation
+    /// changes nothing. A negative or NaN tolerance changes nothing either.
     #[must_use]
     pub fn merged(mut self, tolerance: f64) -> Self {
         if tolerance >= 0.0 {

@@ -14,12 +14,14 @@ const SHARE: f64 = 0.5;
 const TURN: f64 = 0.5;
 
 impl Mesh {
-    /// A closed mesh of fewer triangles, no point of which is further than `deviation` from this one, nor the other way round.
+    /// A closed mesh of fewer triangles, no point of which is further than `deviation` from this one, nor the other way
+    /// round.
     ///
-    /// Edges are collapsed by quadric errors (Garland, Heckbert 1997), by the half-edge meshes of the crate `alum`, so that vertices of the result are vertices of this mesh. That
-    /// alone bounds nothing: the distance of the two surfaces is then certified in both directions, and where it cannot be, the attempt is repeated
-    /// with a smaller error. Vertices in the same place become one; see [`crisp`](Self::crisp) for sharp edges. A mesh that cannot be reduced, is not
-    /// closed or no manifold, or needs more than five attempts stays as it is.
+    /// Edges are collapsed by quadric errors (Garland, Heckbert 1997), by the half-edge meshes of the crate `alum`, so
+    /// that vertices of the result are vertices of this mesh. That alone bounds nothing: the distance of the two
+    /// surfaces is then certified in both directions, and where it cannot be, the attempt is repeated with a smaller
+    /// error. Vertices in the same place become one; see [`crisp`](Self::crisp) for sharp edges. A mesh that cannot be
+    /// reduced, is not closed or no manifold, or needs more than five attempts stays as it is.
     ///
     /// # Errors
     /// [`MeshError`]: a vertex number out of range or a coordinate that is not finite.

@@ -1,9 +1,10 @@
 //! The signed distance of a point from a closed surface of triangles.
 //!
-//! The nearest triangle is found in a tree of boxes. The sign comes from the *pseudonormal* at the nearest point: the face's normal; on
-//! an edge, the sum of the normals of its two faces; at a vertex, the sum of those around it, each weighted by its angle there.
-//! This gives the right sign for every closed surface that does not intersect itself, even where the nearest point is on a sharp
-//! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
+//! The nearest triangle is found in a tree of boxes. The sign comes from the *pseudonormal* at the nearest point: the
+//! face's normal; on an edge, the sum of the normals of its two faces; at a vertex, the sum of those around it, each
+//! weighted by its angle there. This gives the right sign for every closed surface that does not intersect itself, even
+//! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
+//! Pseudonormal*, 2005).
 
 use super::parts::{self, Part};
 use super::{MeshError, TriangleSoup};
@@ -75,7 +76,8 @@ struct Face {
 struct TreeNode {
     low: [f64; 3],
     high: [f64; 3],
-    /// The places `first..first + count` in the order of faces; of an inner node the second child is at `first`, the first right behind it.
+    /// The places `first..first + count` in the order of faces; of an inner node the second child is at `first`, the
+    /// first right behind it.
     first: u32,
     count: u32,
 }
@@ -271,8 +273,8 @@ impl DistanceTo {
         self.search(p, f64::INFINITY, |_| true)
     }
 
-    /// The nearest point within `reach` on triangles that face roughly the same way as `normal` (less than 90° apart). This keeps the two sides
-    /// of a thin wall apart.
+    /// The nearest point within `reach` on triangles that face roughly the same way as `normal` (less than 90° apart).
+    /// This keeps the two sides of a thin wall apart.
     #[must_use]
     pub fn nearest_facing(&self, p: [f64; 3], normal: [f64; 3], reach: f64) -> Option<Nearest> {
         self.search(p, reach, |face| dot(face.normal, normal) > 0.0)
@@ -333,8 +335,8 @@ impl DistanceTo {
         found
     }
 
-    /// The triangle nearest to `p`: its distance, its corners, and for each edge from a corner to the next the normal of a plane through it that the
-    /// triangle beyond shares, pointing inwards.
+    /// The triangle nearest to `p`: its distance, its corners, and for each edge from a corner to the next the normal
+    /// of a plane through it that the triangle beyond shares, pointing inwards.
     #[must_use]
     pub(super) fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
         let (number, place, _) = self.closest(p, f64::INFINITY, |_| true)?;

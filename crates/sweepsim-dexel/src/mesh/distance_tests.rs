@@ -31,7 +31,8 @@ proptest! {
     }
 }
 
-/// A solid with corners of all kinds, convex and not, against all its triangles one after the other and against its dexels.
+/// A solid with corners of all kinds, convex and not, against all its triangles one after the other and against its
+/// dexels.
 #[test]
 fn the_tree_finds_what_all_triangles_have() {
     let part = |min: [f64; 3], max: [f64; 3]| Stock::Block { min, max };
@@ -111,7 +112,8 @@ fn sides_of_a_thin_wall_are_told_apart() {
     assert!(tree.nearest_facing(p, [0.0, 0.0, -1.0], 0.25).is_none());
 }
 
-/// A shaft of so many sides, as long as it is thick 25 times, in any direction: two triangles a side along it, and two fans.
+/// A shaft of so many sides, as long as it is thick 25 times, in any direction: two triangles a side along it, and two
+/// fans.
 fn shaft(sides: usize, [u, v, w]: [[f64; 3]; 3]) -> TriangleSoup {
     let place = |x: f64, y: f64, z: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k] + z * w[k]);
     let corner = |side: usize, x: f64| {
@@ -128,7 +130,8 @@ fn shaft(sides: usize, [u, v, w]: [[f64; 3]; 3]) -> TriangleSoup {
     }
 }
 
-/// The boxes of long and narrow triangles that lie aslant all hold each other, and those along an axis have all one place there.
+/// The boxes of long and narrow triangles that lie aslant all hold each other, and those along an axis have all one
+/// place there.
 #[test]
 fn a_shaft_takes_few_triangles_a_point() {
     let third = 1.0 / 3.0;

@@ -19,8 +19,8 @@ fn further(a: Found, b: Found) -> Found {
     if b.1.distance.abs() > a.1.distance.abs() { b } else { a }
 }
 
-/// The best of samples at all corners of the triangles, and at most `spacing` apart on them, in a fixed order. `of` gets a point and the unit normal of its
-/// triangle.
+/// The best of samples at all corners of the triangles, and at most `spacing` apart on them, in a fixed order. `of`
+/// gets a point and the unit normal of its triangle.
 fn sampled(
     soup: &TriangleSoup,
     spacing: f64,
@@ -65,17 +65,18 @@ fn sampled(
 }
 
 impl DistanceTo {
-    /// The point of another surface that is furthest from this one, with the nearest point here: the one-sided Hausdorff distance, estimated
-    /// from samples. Samples are taken at all vertices, and at most `spacing` apart on triangles; a larger spacing is used where this would
-    /// take more than two million. Distances change no faster than points do, so the true distance is larger by less than the spacing. `None` if either
-    /// surface has no triangles.
+    /// The point of another surface that is furthest from this one, with the nearest point here: the one-sided
+    /// Hausdorff distance, estimated from samples. Samples are taken at all vertices, and at most `spacing` apart on
+    /// triangles; a larger spacing is used where this would take more than two million. Distances change no faster than
+    /// points do, so the true distance is larger by less than the spacing. `None` if either surface has no triangles.
     #[must_use]
     pub fn furthest(&self, other: &TriangleSoup, spacing: f64) -> Option<([f64; 3], Nearest)> {
         sampled(other, spacing, |p, _| Some((p, self.nearest(p)?)))
     }
 
-    /// The point of a target that is farthest from this part, as [`furthest`](Self::furthest), but where the target is missing, at most as far as it is
-    /// thick there, along its normal or an axis. So a web that is missing altogether is missing by its thickness, however far what remains is from it.
+    /// The point of a target that is farthest from this part, as [`furthest`](Self::furthest), but where the target is
+    /// missing, at most as far as it is thick there, along its normal or an axis. So a web that is missing altogether
+    /// is missing by its thickness, however far what remains is from it.
     ///
     /// Distances are those of the target's points from the part: positive where the part is missing.
     #[must_use]
@@ -85,7 +86,8 @@ impl DistanceTo {
         })
     }
 
-    /// How thick the solid is at a point of its surface: along its normal there, or along one of the axes just below the surface.
+    /// How thick the solid is at a point of its surface: along its normal there, or along one of the axes just below
+    /// the surface.
     fn thickness(&self, p: [f64; 3], normal: [f64; 3], size: f64) -> f64 {
         // Hits nearer than rounding are the triangle itself and its neighbours.
         let least = 1e-9 * size;
@@ -102,8 +104,8 @@ impl DistanceTo {
         chords.fold(hit(p, normal.map(|c| -c)), f64::min)
     }
 
-    /// How far a point of a target is from this part, where the target's unit normal is `normal`; outside the part, at most as far as the target is thick
-    /// there.
+    /// How far a point of a target is from this part, where the target's unit normal is `normal`; outside the part, at
+    /// most as far as the target is thick there.
     ///
     /// ```
     /// # use sweepsim_dexel::{DistanceTo, Grid, Stock};

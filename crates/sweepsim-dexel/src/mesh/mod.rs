@@ -113,16 +113,17 @@ impl Mesh {
         })
     }
 
-    /// A copy for pictures, with sharp edges: triangles around a vertex get separate vertices and normals where their normals differ by more
-    /// than an angle, given by its cosine. Positions do not change. Triangles with a vertex number out of range are left out. A triangle
-    /// counts as cut if all its corners do; a vertex, if most of the area around it does. On an edge between cut and uncut faces each side has its
-    /// own vertex.
+    /// A copy for pictures, with sharp edges: triangles around a vertex get separate vertices and normals where their
+    /// normals differ by more than an angle, given by its cosine. Positions do not change. Triangles with a vertex
+    /// number out of range are left out. A triangle counts as cut if all its corners do; a vertex, if most of the area
+    /// around it does. On an edge between cut and uncut faces each side has its own vertex.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
     pub fn crisp(&self, cosine: f64) -> Result<Self, MeshError> {
         let mut mesh = Self::default();
-        // The vertices made of each, with the sums of their triangles' normals, and of lengths of those that are cut less the others.
+        // The vertices made of each, with the sums of their triangles' normals, and of lengths of those that are cut
+        // less the others.
         let mut made: Vec<Vec<(u32, [f64; 3], f64)>> = vec![Vec::new(); self.vertices.len()];
         for triangle in &self.triangles {
             if triangle.iter().any(|v| *v as usize >= self.vertices.len()) {
@@ -177,7 +178,8 @@ impl TriangleSoup {
     /// ```
     #[must_use]
     pub fn block(min: [f64; 3], max: [f64; 3]) -> Self {
-        // Of each side, the corners counter-clockwise as seen from outside; bit k of a corner says whether it is at the upper end of axis k.
+        // Of each side, the corners counter-clockwise as seen from outside; bit k of a corner says whether it is at the
+        // upper end of axis k.
         const SIDES: [[usize; 4]; 6] = [
             [0, 4, 6, 2],
             [1, 3, 7, 5],
@@ -217,8 +219,9 @@ impl TriangleSoup {
         six.sum::<f64>() / 6.0
     }
 
-    /// An indexed mesh. Corners that are equal to the bit share a vertex; its normal is the mean of those of the triangles around it, weighted by
-    /// area. See [`Mesh::crisp`] for sharp edges. Triangles with two coincident corners are left out.
+    /// An indexed mesh. Corners that are equal to the bit share a vertex; its normal is the mean of those of the
+    /// triangles around it, weighted by area. See [`Mesh::crisp`] for sharp edges. Triangles with two coincident
+    /// corners are left out.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]

@@ -18,9 +18,10 @@ pub(super) fn within(surface: &TriangleSoup, other: &DistanceTo, most: f64) -> b
         .all(|triangle| is_near(*triangle, other, most))
 }
 
-/// Whether a triangle is near another surface, by parts. A part is, if all its corners are near the same triangle: what is near a convex set is convex.
-/// It is, too, if it is so small that all of it is near the point nearest to its middle. Others are cut along the edges of the triangle nearest to their
-/// middle, or in halves while they are much larger than that.
+/// Whether a triangle is near another surface, by parts. A part is, if all its corners are near the same triangle: what
+/// is near a convex set is convex. It is, too, if it is so small that all of it is near the point nearest to its
+/// middle. Others are cut along the edges of the triangle nearest to their middle, or in halves while they are much
+/// larger than that.
 fn is_near(triangle: [[f64; 3]; 3], other: &DistanceTo, most: f64) -> bool {
     let mut open = vec![Part::from_slice(&triangle)];
     let mut parts = 0;
@@ -70,8 +71,8 @@ fn reach(corners: &[[f64; 3]], from: [f64; 3]) -> f64 {
     corners.iter().map(|p| length(sub(*p, from))).fold(0.0, f64::max)
 }
 
-/// The pieces of a polygon on the side of a plane that its normal points to, and on the other. What is on the plane but for rounding is on it, and a polygon that is
-/// altogether is on the first side.
+/// The pieces of a polygon on the side of a plane that its normal points to, and on the other. What is on the plane but
+/// for rounding is on it, and a polygon that is altogether is on the first side.
 fn cut(part: &Part, place: [f64; 3], normal: [f64; 3]) -> (Option<Part>, Option<Part>) {
     let size = part
         .iter()

@@ -1,7 +1,8 @@
 //! Triangles in parts, for trees of boxes.
 //!
-//! The box of a long and narrow triangle that lies aslant is almost empty, and those of its neighbours in a fan or along a shaft are almost the same: a tree of them
-//! tells nothing apart. Such triangles are cut across into parts, each with its own box (*early split clipping*; Ernst, Greiner 2007).
+//! The box of a long and narrow triangle that lies aslant is almost empty, and those of its neighbours in a fan or
+//! along a shaft are almost the same: a tree of them tells nothing apart. Such triangles are cut across into parts,
+//! each with its own box (*early split clipping*; Ernst, Greiner 2007).
 
 /// The box of a triangle, or of a part of it.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +15,8 @@ pub(super) struct Part {
     pub place: [f64; 3],
 }
 
-/// A triangle is cut if half the surface of its box is more than so many times its area. Of half a rectangle across an axis, it is twice the area.
+/// A triangle is cut if half the surface of its box is more than so many times its area. Of half a rectangle across an
+/// axis, it is twice the area.
 const EMPTY: f64 = 32.0;
 /// Parts of such triangles on average, and the most of one and of all.
 const EACH: f64 = 64.0;

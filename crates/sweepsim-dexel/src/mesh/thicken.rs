@@ -40,8 +40,8 @@ fn parabola(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     Some([far.min(near), far.max(near)])
 }
 
-/// Where the vertical line through `(x, y)` is within `d` of a triangle. That set is convex, so it is one interval: the hull of those within `d` of its
-/// corners, its edges and its face.
+/// Where the vertical line through `(x, y)` is within `d` of a triangle. That set is convex, so it is one interval: the
+/// hull of those within `d` of its corners, its edges and its face.
 fn near_triangle(corners: &[[f64; 3]; 3], x: f64, y: f64, d: f64) -> Option<[f64; 2]> {
     // Seen from a corner, so that little cancels.
     let origin = corners[0];
@@ -115,8 +115,8 @@ fn within_slab(corners: &[[f64; 3]; 3], slab: [f64; 2]) -> [f64; 2] {
 impl TriangleSoup {
     /// All points within `distance` of the surface, on the lines of a grid: exact up to rounding.
     ///
-    /// Together with the solid that the triangles enclose it is the solid grown by that distance along its normals; the solid without it is the solid
-    /// shrunk by it.
+    /// Together with the solid that the triangles enclose it is the solid grown by that distance along its normals; the
+    /// solid without it is the solid shrunk by it.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, TriangleSoup};

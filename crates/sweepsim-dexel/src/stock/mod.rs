@@ -50,7 +50,8 @@ pub enum Stock {
     Mesh(TriangleSoup),
     /// The result of an earlier run, on the same grid.
     Dexels(Arc<Dexels>),
-    /// The result of an earlier run along `x`, `y` and `z`, as [`TriDexels::into_sets`](crate::TriDexels::into_sets) returns it, on the same grids.
+    /// The result of an earlier run along `x`, `y` and `z`, as [`TriDexels::into_sets`](crate::TriDexels::into_sets)
+    /// returns it, on the same grids.
     TriDexels(Arc<[Dexels; 3]>),
     /// The union of these.
     Union(Vec<Stock>),
@@ -146,7 +147,8 @@ fn of_dexels(dexels: &Dexels) -> Option<Corners> {
 }
 
 impl Stock {
-    /// A box along the axes of the world that holds the stock: its lowest and highest corner. `None` if there is no material.
+    /// A box along the axes of the world that holds the stock: its lowest and highest corner. `None` if there is no
+    /// material.
     ///
     /// ```
     /// use sweepsim_dexel::Stock;

@@ -15,8 +15,8 @@ const SIDES: [[usize; 4]; 6] = [
 ];
 
 impl Stock {
-    /// The same solid, if its coordinates are those of `frame`. A block whose sides are then not along the axes becomes a mesh. `None` for dexels: their lines would have other
-    /// directions.
+    /// The same solid, if its coordinates are those of `frame`. A block whose sides are then not along the axes becomes
+    /// a mesh. `None` for dexels: their lines would have other directions.
     ///
     /// ```
     /// use sweepsim_dexel::{Frame, Stock};

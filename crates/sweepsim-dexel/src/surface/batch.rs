@@ -96,7 +96,8 @@ impl TriangleBatch {
         self.triangles.push(numbers);
     }
 
-    /// Two triangles over four corners, along the better diagonal: the one for which the normals are closer to those of the triangles.
+    /// Two triangles over four corners, along the better diagonal: the one for which the normals are closer to those of
+    /// the triangles.
     pub fn quad(&mut self, upper: bool, q: [Corner; 4]) {
         let fit = |corners: [usize; 3]| {
             let n = unit(normal_of(corners.map(|k| q[k].at)));

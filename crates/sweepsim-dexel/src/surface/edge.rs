@@ -63,8 +63,8 @@ pub(super) fn slopes(end: &End, upper: bool) -> [f64; 2] {
     })
 }
 
-/// How far a face at `z` goes up over `run` along a slope that ends at an outline: little where that adds material, unless
-/// there is already material behind the outline.
+/// How far a face at `z` goes up over `run` along a slope that ends at an outline: little where that adds material,
+/// unless there is already material behind the outline.
 pub(super) fn rise(slope: f64, run: f64, upper: bool, z: f64, behind: &[Interval]) -> f64 {
     let shrink = 3.0 * run.abs();
     let rise = (slope * run).clamp(-shrink, shrink);
@@ -98,7 +98,8 @@ fn join(a: &End, b: &End, upper: bool, axis: usize, distance: f64) -> Option<(f6
         return Some((2.0, None));
     }
     let [ta, tb, tc] = [ga, gb, chord].map(f64::atan);
-    // On a smooth surface, the direction of the chord lies between those of the tangents, apart from changes of curvature.
+    // On a smooth surface, the direction of the chord lies between those of the tangents, apart from changes of
+    // curvature.
     let between = cosine.clamp(-1.0, 1.0).acos();
     let allowed = 0.2 + 0.5 * between.min(1.2);
     let beyond = (ta.min(tb) - tc).max(tc - ta.max(tb));
@@ -183,8 +184,8 @@ impl Edge {
         edge
     }
 
-    /// Finds pairs of neighbouring ends on a dexel, both without partners, whose tangents meet before the other dexel: the material
-    /// or gap between them ends there. If there is also a plain step, that takes precedence.
+    /// Finds pairs of neighbouring ends on a dexel, both without partners, whose tangents meet before the other dexel:
+    /// the material or gap between them ends there. If there is also a plain step, that takes precedence.
     fn find_wedges(&mut self, lines: [&[Interval]; 2], axis: usize, distance: f64) {
         let (mut first, mut count) = (None, 0);
         for side in 0..2 {

@@ -4,17 +4,17 @@
 //! neighbouring dexels, with the envelope's normals at the corners. We do the same wherever the surface is
 //! smooth. Elsewhere a dexel represents the cell around it:
 //!
-//! 1. **Along every grid edge** the ends of its two dexels are [joined](edge): two ends belong together if the line between
-//!    them is compatible with their normals, so sheets are continued by tangents rather than by overlap. A join
+//! 1. **Along every grid edge** the ends of its two dexels are [joined](edge): two ends belong together if the line
+//!    between them is compatible with their normals, so sheets are continued by tangents rather than by overlap. A join
 //!    is smooth or a *crease*, where the tangents meet at an angle. An end left over is a *step*.
-//! 2. **Creases and steps draw an outline** on the grid: a polyline with one vertex in every square that it passes through and one
-//!    on every grid edge that it crosses. A crease crosses where the tangents meet. A step may be anywhere
-//!    between its dexels, so its [outline] is relaxed to a smooth line that keeps its corners.
-//! 3. **In every square** faces extend from the dexels to the outline along their tangents. On the outline stand vertical
-//!    walls, wherever there is material on one side only.
+//! 2. **Creases and steps draw an outline** on the grid: a polyline with one vertex in every square that it passes
+//!    through and one on every grid edge that it crosses. A crease crosses where the tangents meet. A step may be
+//!    anywhere between its dexels, so its [outline] is relaxed to a smooth line that keeps its corners.
+//! 3. **In every square** faces extend from the dexels to the outline along their tangents. On the outline stand
+//!    vertical walls, wherever there is material on one side only.
 //!
-//! The grid is surrounded by dexels without material. So the surface of any dexels is closed: every edge is used equally often in
-//! both directions. The mesh of a block that fills whole cells is that block.
+//! The grid is surrounded by dexels without material. So the surface of any dexels is closed: every edge is used
+//! equally often in both directions. The mesh of a block that fills whole cells is that block.
 
 mod batch;
 mod edge;
@@ -39,10 +39,11 @@ const CRISP: f64 = 0.766;
 impl Dexels {
     /// The closed surface of the material, as triangles with normals, in world coordinates.
     ///
-    /// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
-    /// side has its own vertex. At the ends the normals are those of the dexels. A vertex is marked as cut if a tool made
-    /// the end. A wall is marked as cut if a tool made the end that bounds the space in front of it; beside a dexel without
-    /// material, if it is inside a hole or both ends of the interval behind it were cut. [`Dexels::sources`] tells which cuts.
+    /// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease;
+    /// there each side has its own vertex. At the ends the normals are those of the dexels. A vertex is marked as cut
+    /// if a tool made the end. A wall is marked as cut if a tool made the end that bounds the space in front of it;
+    /// beside a dexel without material, if it is inside a hole or both ends of the interval behind it were cut.
+    /// [`Dexels::sources`] tells which cuts.
     ///
     /// The mesh is the same for any number of threads.
     ///
@@ -62,10 +63,11 @@ impl Dexels {
         surface_within(self, MOST_VERTICES)
     }
 
-    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the source of the
-    /// nearest interval end that a tool made; for the others, the stock.
+    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the
+    /// source of the nearest interval end that a tool made; for the others, the stock.
     ///
-    /// On steep walls the nearest end may be far away; [`TriDexels::sources`](crate::TriDexels::sources) is more accurate there.
+    /// On steep walls the nearest end may be far away; [`TriDexels::sources`](crate::TriDexels::sources) is more
+    /// accurate there.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Interval, Source, Stock};
@@ -345,8 +347,8 @@ fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>, most: usize) -> Result
     Ok(mesh)
 }
 
-/// If the normal of an end does not suit a triangle, the triangle's corner gets a new vertex with a normal that does: the mean of all such
-/// triangles around the end, or the triangle's own.
+/// If the normal of an end does not suit a triangle, the triangle's corner gets a new vertex with a normal that does:
+/// the mean of all such triangles around the end, or the triangle's own.
 fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
     let across = |mesh: &Mesh, t: usize| normal_of(mesh.triangles[t].map(|v| mesh.vertices[v as usize]));
     // Only used for lookups, so its order does not matter.

@@ -97,7 +97,8 @@ impl Outline {
         outline
     }
 
-    /// For each vertex, the direction from one neighbour to the other, smoothed along the outline but not around corners.
+    /// For each vertex, the direction from one neighbour to the other, smoothed along the outline but not around
+    /// corners.
     fn find_directions(&mut self, field: &Field<'_>, squares: &[[usize; 2]]) {
         let neighbours: Vec<Vec<usize>> = squares
             .par_iter()
@@ -215,8 +216,8 @@ fn run(field: &Field<'_>, mut s: [usize; 2], k: usize) -> (usize, usize) {
     (RUN, 0)
 }
 
-/// The edges through which the outline through a square continues. Where one outline ends at another, the latter goes straight on; where
-/// creases end at steps, the steps do.
+/// The edges through which the outline through a square continues. Where one outline ends at another, the latter goes
+/// straight on; where creases end at steps, the steps do.
 fn through(field: &Field<'_>, s: [usize; 2]) -> Vec<usize> {
     let lines: Vec<usize> = (0..4).filter(|k| is_line(field, s, *k)).collect();
     if lines.len() < 3 {

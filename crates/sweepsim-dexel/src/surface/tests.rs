@@ -190,8 +190,9 @@ fn tangents_meet_in_a_crease() {
     }
     let mesh = dexels.surface().unwrap();
     assert!(volume(&mesh) > 0.0);
-    // Normals are kept to 6.5e-5 radians, so slopes s to 6.5e-5 (1 + s²). Ends are 0.7 and 0.3 before and behind the ridge, where
-    // slopes 1 and −1.7 meet: at x to (0.7 · 2 + 0.3 · 3.89) · 6.5e-5 / 2.7, at z to (0.7 · 2 · 1.7 + 0.3 · 3.89 · 1) · 6.5e-5 / 2.7.
+    // Normals are kept to 6.5e-5 radians, so slopes s to 6.5e-5 (1 + s²). Ends are 0.7 and 0.3 before and behind the
+    // ridge, where slopes 1 and −1.7 meet: at x to (0.7 · 2 + 0.3 · 3.89) · 6.5e-5 / 2.7, at z to (0.7 · 2 · 1.7 + 0.3
+    // · 3.89 · 1) · 6.5e-5 / 2.7.
     let (off_x, off_z) = (6.2e-5, 8.6e-5);
     let ridge: Vec<_> = mesh.vertices.iter().filter(|v| (v[2] - top).abs() < off_z).collect();
     assert!(

@@ -170,8 +170,8 @@ impl Square<'_> {
         }
     }
 
-    /// A wall stands where a face is too steep for dexels to meet. So the steep ends that bound the space in front of it give its
-    /// direction: the sum of the horizontal parts of those normals that are on the side of `normal`.
+    /// A wall stands where a face is too steep for dexels to meet. So the steep ends that bound the space in front of
+    /// it give its direction: the sum of the horizontal parts of those normals that are on the side of `normal`.
     fn steep_around(&self, k: usize, from_first: bool, z: f64, normal: [f64; 2]) -> [f64; 2] {
         let which = usize::from(from_first);
         let line = self.corners[(k + which) % 4].line;

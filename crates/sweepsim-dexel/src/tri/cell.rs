@@ -1,7 +1,7 @@
 //! How the curves run in a cell, for each of the 256 ways to fill its corners.
 //!
-//! Corner `x + 2y + 4z` is the one at those offsets. Edge `4a + u + 2v` runs along axis `a` with those offsets along the
-//! axes `a + 1` and `a + 2`.
+//! Corner `x + 2y + 4z` is the one at those offsets. Edge `4a + u + 2v` runs along axis `a` with those offsets along
+//! the axes `a + 1` and `a + 2`.
 
 /// Axis of each edge, and where it begins.
 pub(super) const EDGES: [(usize, [usize; 3]); 12] = edges();
@@ -81,10 +81,12 @@ const fn kind(corners: usize) -> Kind {
     Kind { sheets, sheet }
 }
 
-/// Joins the edges that are neighbours on a face. The corners of the face are numbered around it as (0,0), (1,0), (1,1), (0,1); edge `k` is from corner `k` to the next.
+/// Joins the edges that are neighbours on a face. The corners of the face are numbered around it as (0,0), (1,0),
+/// (1,1), (0,1); edge `k` is from corner `k` to the next.
 const fn join(corners: usize, mut root: [u8; 12], axis: usize, side: usize) -> [u8; 12] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    // An edge along u has the offset v and the side as those of the axes u + 1 = v and u + 2 = axis; one along v the side, then u.
+    // An edge along u has the offset v and the side as those of the axes u + 1 = v and u + 2 = axis; one along v the
+    // side, then u.
     let edges = [4 * u + 2 * side, 4 * v + side + 2, 4 * u + 1 + 2 * side, 4 * v + side];
     let mut solid = [false; 4];
     let mut k = 0;

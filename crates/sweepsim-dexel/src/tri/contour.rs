@@ -1,19 +1,21 @@
 //! A closed surface from tri-dexels: dual contouring, with one vertex for each sheet in a cell.
 //!
-//! The lines of the three sets cross at the points of a lattice, which is surrounded by a rim of points without material. On each
-//! edge of the lattice whose two points differ there is an interval end, with its normal. In each cell of eight points:
+//! The lines of the three sets cross at the points of a lattice, which is surrounded by a rim of points without
+//! material. On each edge of the lattice whose two points differ there is an interval end, with its normal. In each
+//! cell of eight points:
 //!
-//! 1. Edges with an interval end are joined across the cell's faces into closed curves, as in marching cubes. Where all four
-//!    edges of a face have an end, the curves go around the points with material, in both cells that share the face.
-//! 2. Each curve gets a vertex where the tangent planes of its ends meet: the least squares of the distances (Ju, Losasso,
-//!    Schaefer, Warren: *Dual Contouring of Hermite Data*, 2002). If that point is more than one cell
-//!    outside, the best point within that range is taken.
+//! 1. Edges with an interval end are joined across the cell's faces into closed curves, as in marching cubes. Where all
+//!    four edges of a face have an end, the curves go around the points with material, in both cells that share the
+//!    face.
+//! 2. Each curve gets a vertex where the tangent planes of its ends meet: the least squares of the distances (Ju,
+//!    Losasso, Schaefer, Warren: *Dual Contouring of Hermite Data*, 2002). If that point is more than one cell outside,
+//!    the best point within that range is taken.
 //! 3. Each interval end gets a quadrilateral of the vertices in the four cells around its edge.
 //!
-//! This is the dual of a marching-cubes surface (Nielson: *Dual Marching Cubes*, 2004), hence closed, and each vertex has one
-//! fan of faces. Only one thing can go wrong: two vertices are joined twice if the two curves that cross a face belong to the same
-//! curve on each side of it. So an edge of the mesh across such a face gets an extra vertex there, on its curve. (Others flip the
-//! curves of such a face; this way a cell does not depend on its neighbours.)
+//! This is the dual of a marching-cubes surface (Nielson: *Dual Marching Cubes*, 2004), hence closed, and each vertex
+//! has one fan of faces. Only one thing can go wrong: two vertices are joined twice if the two curves that cross a face
+//! belong to the same curve on each side of it. So an edge of the mesh across such a face gets an extra vertex there,
+//! on its curve. (Others flip the curves of such a face; this way a cell does not depend on its neighbours.)
 
 use super::TriDexels;
 use super::cell::{CELLS, EDGES};
@@ -200,8 +202,8 @@ struct Face<'a> {
     hit: &'a Hit,
 }
 
-/// The vertices in the cells around an edge, counter-clockwise seen from outside, and the curve between each and the next if
-/// two curves cross the lattice face between them.
+/// The vertices in the cells around an edge, counter-clockwise seen from outside, and the curve between each and the
+/// next if two curves cross the lattice face between them.
 struct Ring {
     corners: [u32; 4],
     keys: [Option<Key>; 4],

@@ -14,11 +14,12 @@ use crate::stock::{Stock, StockError};
 use crate::surface::sources_in;
 use thiserror::Error;
 
-/// Three sets of dexels, along `x`, `y` and `z`, whose lines meet at the centres of `cells[0] × cells[1] × cells[2]` boxes.
+/// Three sets of dexels, along `x`, `y` and `z`, whose lines meet at the centres of `cells[0] × cells[1] × cells[2]`
+/// boxes.
 ///
-/// Dexels along an axis have the [frame](Grid::frame) of [`Frame::cyclic`]: their `x`, `y` and `z` are the axes `axis + 1`, `axis + 2`
-/// and `axis` (mod 3), and so are the coordinates of their normals. What is steep for one set is flat for another, so every face is met by lines
-/// of at least one set at less than 55° from its normal.
+/// Dexels along an axis have the [frame](Grid::frame) of [`Frame::cyclic`]: their `x`, `y` and `z` are the axes
+/// `axis + 1`, `axis + 2` and `axis` (mod 3), and so are the coordinates of their normals. What is steep for one set is
+/// flat for another, so every face is met by lines of at least one set at less than 55° from its normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriDexels {
     min: [f64; 3],
@@ -76,8 +77,8 @@ impl TriDexels {
     /// The part of a stock that lies inside a box.
     ///
     /// # Errors
-    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run can be part of the stock only if they run along all three
-    /// axes ([`Stock::TriDexels`]), in the same box.
+    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run can be part of the stock only if
+    /// they run along all three axes ([`Stock::TriDexels`]), in the same box.
     ///
     /// ```
     /// use sweepsim_dexel::{Stock, TriDexels};
@@ -164,18 +165,19 @@ impl TriDexels {
         self.sets.iter().map(Dexels::volume).sum::<f64>() / 3.0
     }
 
-    /// The number of line crossings where the three sets disagree on whether there is material: 0, except for points on the surface itself. The
-    /// [surface](Self::surface) follows the majority.
+    /// The number of line crossings where the three sets disagree on whether there is material: 0, except for points on
+    /// the surface itself. The [surface](Self::surface) follows the majority.
     #[must_use]
     pub fn disagreements(&self) -> usize {
         contour::disagreements(self)
     }
 
-    /// A closed surface with sharp edges and corners, by dual contouring. `docs/algorithms/tri-dexels.md` describes the algorithm.
+    /// A closed surface with sharp edges and corners, by dual contouring. `docs/algorithms/tri-dexels.md` describes the
+    /// algorithm.
     ///
-    /// Every edge has two triangles and every vertex one fan of them. Vertices are shared and have mean normals; see [`Mesh::crisp`] for
-    /// pictures. Features thinner than the spacing of the lines may be missing. Material beyond the box is cut off. The mesh is the
-    /// same for any number of threads.
+    /// Every edge has two triangles and every vertex one fan of them. Vertices are shared and have mean normals; see
+    /// [`Mesh::crisp`] for pictures. Features thinner than the spacing of the lines may be missing. Material beyond the
+    /// box is cut off. The mesh is the same for any number of threads.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -183,16 +185,16 @@ impl TriDexels {
         contour::contour(self, MOST_VERTICES)
     }
 
-    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the source of the
-    /// nearest interval end in the three sets that a tool made; for the others, the stock.
+    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the
+    /// source of the nearest interval end in the three sets that a tool made; for the others, the stock.
     #[must_use]
     pub fn sources(&self, mesh: &Mesh) -> Vec<Source> {
         let [x, y, z] = &self.sets;
         sources_in(&[x, y, z], mesh)
     }
 
-    /// The source of the surface at or near a point of the world: that of the nearest interval end in the three sets, if one is
-    /// within `reach`.
+    /// The source of the surface at or near a point of the world: that of the nearest interval end in the three sets,
+    /// if one is within `reach`.
     #[must_use]
     pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {
         let point = point.into();

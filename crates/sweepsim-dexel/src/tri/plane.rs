@@ -15,10 +15,11 @@ pub(super) struct Planes {
 /// Directions in which the planes' normals spread by less than this (as a sine) do not determine where the planes meet.
 const SPREAD: f64 = 0.1;
 
-/// How far beyond its cell, in cells, a vertex may be. The vertex of a cell follows an edge of the solid that passes close by;
-/// so do its neighbours, and their triangles are thin.
+/// How far beyond its cell, in cells, a vertex may be. The vertex of a cell follows an edge of the solid that passes
+/// close by; so do its neighbours, and their triangles are thin.
 const BEYOND: f64 = 1.0;
-/// The weight of the squared distance from the middle, relative to those from the planes, if the vertex is held near its cell.
+/// The weight of the squared distance from the middle, relative to those from the planes, if the vertex is held near
+/// its cell.
 const WEIGHT: f64 = 1e-3;
 /// The number of passes over the coordinates in that case.
 const SWEEPS: usize = 40;
@@ -54,8 +55,8 @@ impl Planes {
         }
     }
 
-    /// The least-squares point of the planes, displaced from the [middle](Self::middle) only in directions that the planes determine;
-    /// if that is far outside the box, the best point near the box.
+    /// The least-squares point of the planes, displaced from the [middle](Self::middle) only in directions that the
+    /// planes determine; if that is far outside the box, the best point near the box.
     pub fn meet(&self, lower: [f64; 3], upper: [f64; 3]) -> [f64; 3] {
         let middle = self.middle();
         // AᵀA and Aᵀb of the normals, with b as distances from the middle.
@@ -98,7 +99,8 @@ impl Planes {
     }
 }
 
-/// Minimises `xᵀAx − 2bᵀx + weight·xᵀx` within bounds around 0, one coordinate after the other, which converges for convex functions.
+/// Minimises `xᵀAx − 2bᵀx + weight·xᵀx` within bounds around 0, one coordinate after the other, which converges for
+/// convex functions.
 fn within(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> [f64; 3] {
     let mut x = [0.0; 3];
     for _ in 0..SWEEPS {

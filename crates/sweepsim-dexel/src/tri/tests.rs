@@ -101,8 +101,9 @@ fn turned_box(half: [f64; 3], axis: [f64; 3], angle: f64) -> (TriangleSoup, [[f6
     )
 }
 
-/// Dexels keep normals to 6.5e-5 radians. A cell's ends are at most a diagonal of it, √3 steps, from where their planes meet, so at a
-/// right edge each of its two planes is off by at most 6.5e-5 · √3 steps there, and so is the vertex along either of their normals.
+/// Dexels keep normals to 6.5e-5 radians. A cell's ends are at most a diagonal of it, √3 steps, from where their planes
+/// meet, so at a right edge each of its two planes is off by at most 6.5e-5 · √3 steps there, and so is the vertex
+/// along either of their normals.
 #[test]
 fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
     let half = [5.1, 3.3, 4.2];
@@ -122,7 +123,8 @@ fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
                 .filter(|d| **d < 2.0 * 6.5e-5 * step * 3.0_f64.sqrt())
                 .count();
             off_faces += usize::from(near == 0);
-            // Vertices on no face are in cells that an edge only just touches, where at most one line meets one of its faces.
+            // Vertices on no face are in cells that an edge only just touches, where at most one line meets one of its
+            // faces.
             assert!(
                 near > 0 || off.iter().filter(|d| **d < step).count() >= 2,
                 "{v:?} {off:?}"
@@ -307,7 +309,8 @@ proptest! {
 
     #[test]
     fn volumes_converge(stock in csg()) {
-        // The true volume, from many lines: for a slab 1 thick and 9 wide they are within 1.5 %, less than the tolerance below.
+        // The true volume, from many lines: for a slab 1 thick and 9 wide they are within 1.5 %, less than the
+        // tolerance below.
         let grid = crate::Grid::new([-10.0; 2], [10.0; 2], [1501, 1501]).unwrap();
         let whole = Stock::Block { min: [-10.0; 3], max: [10.0; 3] };
         let exact = Stock::Intersection(vec![whole, stock.clone()]).dexels(&grid).unwrap().volume();

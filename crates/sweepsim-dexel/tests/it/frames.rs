@@ -5,8 +5,8 @@ use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup, compare_with_mesh};
 
 type Inside = fn([f64; 3]) -> f64;
 
-/// A block without a ball and with a cylinder, and how deep a point is in each, at least; a cylinder's or a block's depth is
-/// that of its nearest face.
+/// A block without a ball and with a cylinder, and how deep a point is in each, at least; a cylinder's or a block's
+/// depth is that of its nearest face.
 fn stock() -> (Stock, Inside) {
     let block = Stock::Block {
         min: [-3.0, -2.0, -1.0],
@@ -106,7 +106,8 @@ proptest! {
         prop_assert!((dexels.volume() - exact).abs() < 0.02 * exact, "{}", dexels.volume());
         let found = compare_with_mesh(&dexels, &soup).unwrap();
         prop_assert_eq!(found.unmatched(), 0);
-        // Lines for meshes are 1e-9 of their distance aside; normals are kept to 6.5e-5, and near edges another face is nearest.
+        // Lines for meshes are 1e-9 of their distance aside; normals are kept to 6.5e-5, and near edges another face is
+        // nearest.
         prop_assert!(found.range().unwrap().iter().all(|d| d.abs() < 1e-8), "{:?}", found.range());
         let mesh = dexels.surface().unwrap();
         let volume = mesh.soup().unwrap().volume();

@@ -1,6 +1,7 @@
 //! Dexels in a compact binary form (`.dexels`), bit for bit, with normals and sources.
 //!
-//! Numbers are little-endian. A *varint* has 7 bits per byte, the lowest first, and the top bit set in all bytes but the last.
+//! Numbers are little-endian. A *varint* has 7 bits per byte, the lowest first, and the top bit set in all bytes but
+//! the last.
 //!
 //! | part | content |
 //! | --- | --- |
@@ -8,10 +9,11 @@
 //! | blocks | number of the first line `u64`; lines `u32`; bytes `u32`; the bytes; checksum `u32` |
 //! | end | `u64::MAX`; 0 as `u32`; 8 as `u32`; number of all intervals `u64`; checksum `u32` |
 //!
-//! Each checksum is the CRC-32 of its part. A block has at most 4,096 lines, and only the last of them may extend beyond a mebibyte. A line
-//! begins with the number of its intervals as a varint; 0 is followed by the number of further empty lines. Then follow the ends, going up.
-//! Each is stored as its difference from another end: the one with the same number on the last line of the block that has one; else the end
-//! below it; else an end of the stock at height 0:
+//! Each checksum is the CRC-32 of its part. A block has at most 4,096 lines, and only the last of them may extend
+//! beyond a mebibyte. A line begins with the number of its intervals as a varint; 0 is followed by the number of
+//! further empty lines. Then follow the ends, going up. Each is stored as its difference from another end: the one with
+//! the same number on the last line of the block that has one; else the end below it; else an end of the stock at
+//! height 0:
 //!
 //! | bit of the first byte | what follows |
 //! | --- | --- |
@@ -21,8 +23,8 @@
 //! | 8 | the time, `f32` |
 //! | 16 | nothing: the end is the stock's |
 //!
-//! Flat faces therefore take 2 bytes per interval and 1 per line. No end takes less than a byte, so that a reader needs memory in
-//! proportion to the length of the file, not to what its header claims.
+//! Flat faces therefore take 2 bytes per interval and 1 per line. No end takes less than a byte, so that a reader needs
+//! memory in proportion to the length of the file, not to what its header claims.
 
 use sweepsim_dexel::{Dexels, End, Frame, Grid, Source};
 

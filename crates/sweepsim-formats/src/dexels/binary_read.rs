@@ -29,8 +29,8 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
 /// Reads dexels block by block; anything after them is left in the reader.
 ///
 /// # Errors
-/// [`FormatError`]: not such a file, another version, truncated or damaged (with the dexel). Memory is in proportion to the length of the
-/// file, whatever it contains.
+/// [`FormatError`]: not such a file, another version, truncated or damaged (with the dexel). Memory is in proportion to
+/// the length of the file, whatever it contains.
 ///
 /// ```
 /// use sweepsim_dexel::{Grid, Stock};

@@ -1,5 +1,5 @@
-//! `dexels.csv`: a header `i,j,z0,z1`, and one row per interval, sorted by `i`, `j`, `z0`; numbers in the shortest form that reads back
-//! exactly.
+//! `dexels.csv`: a header `i,j,z0,z1`, and one row per interval, sorted by `i`, `j`, `z0`; numbers in the shortest form
+//! that reads back exactly.
 
 use std::cmp::Ordering;
 use std::fmt::Write as _;

@@ -70,11 +70,12 @@ pub fn is_dexels_csv(file: &Path) -> Result<bool, FormatError> {
     read().map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))
 }
 
-/// Reads dexels: `.csv`, `.dexels`, `.tridexels` (those along z) or `.npz`. Tables do not contain their grid, and need `grid`; the others have their own.
+/// Reads dexels: `.csv`, `.dexels`, `.tridexels` (those along z) or `.npz`. Tables do not contain their grid, and need
+/// `grid`; the others have their own.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, its content is invalid, or a table comes
-/// without a grid.
+/// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, its content is invalid, or
+/// a table comes without a grid.
 pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, FormatError> {
     let failed = |error: io::Error| FormatError::new(Problem::Read(error), None);
     let read = |format| -> Result<Dexels, FormatError> {

@@ -9,10 +9,11 @@
 //! 1 0 150000000 1 0 0 *98
 //! ```
 //!
-//! A header of four lines is followed by a line for each `i`, with the dexels by `j`: the number of intervals, and then `z0 z1 …` in
-//! units of a tenth of the tolerance. Each end is stored as the difference from its prediction by the dexels before it that have the same
-//! number of intervals: from the straight line through the last two, from the last one, or 0. `*k` stands for `k` more dexels without
-//! intervals, or with differences that are all 0. Flat faces, empty regions and slopes therefore cost next to nothing.
+//! A header of four lines is followed by a line for each `i`, with the dexels by `j`: the number of intervals, and then
+//! `z0 z1 …` in units of a tenth of the tolerance. Each end is stored as the difference from its prediction by the
+//! dexels before it that have the same number of intervals: from the straight line through the last two, from the last
+//! one, or 0. `*k` stands for `k` more dexels without intervals, or with differences that are all 0. Flat faces, empty
+//! regions and slopes therefore cost next to nothing.
 
 use sweepsim_dexel::{Dexels, Grid, Interval};
 

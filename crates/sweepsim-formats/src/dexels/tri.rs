@@ -36,8 +36,8 @@ pub fn write_tri_dexels(dexels: &TriDexels, writer: &mut (impl Write + ?Sized)) 
 /// Reads dexels along three axes; anything after them is left in the reader.
 ///
 /// # Errors
-/// [`FormatError`]: not such a file, another version, truncated or damaged, or three sets that are not those of one box. Memory is in proportion to the
-/// length of the file, whatever it contains.
+/// [`FormatError`]: not such a file, another version, truncated or damaged, or three sets that are not those of one
+/// box. Memory is in proportion to the length of the file, whatever it contains.
 ///
 /// ```
 /// use sweepsim_dexel::{Stock, TriDexels};

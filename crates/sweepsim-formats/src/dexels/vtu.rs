@@ -10,8 +10,8 @@ use crate::vtk::Document;
 /// VTK's number for a line.
 const LINE: u8 = 3;
 
-/// Writes dexels for ParaView (`.vtu`): each interval is a line, with its cell `i`, `j`; its ends have `normal`, `path` (65535 for
-/// no tool, 4294967295 where there are more paths), `segment` and `t`.
+/// Writes dexels for ParaView (`.vtu`): each interval is a line, with its cell `i`, `j`; its ends have `normal`, `path`
+/// (65535 for no tool, 4294967295 where there are more paths), `segment` and `t`.
 ///
 /// # Errors
 /// Those of the writer.

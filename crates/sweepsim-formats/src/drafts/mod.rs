@@ -1,5 +1,5 @@
-//! Jobs for programs: what a program, a tool library and the user say becomes the text of a job, and what nobody says is guessed, and
-//! said to be.
+//! Jobs for programs: what a program, a tool library and the user say becomes the text of a job, and what nobody says
+//! is guessed, and said to be.
 
 mod guesses;
 mod words;
@@ -116,7 +116,8 @@ pub fn draft(file: &FilePath, options: &DraftOptions) -> Result<Draft, FormatErr
     draft_of(file, options, &Provided::default())
 }
 
-/// Writes a job as [`draft`] does, for a program or tools that the caller provides: the job is complete only with them ([`Job::parse_with`](crate::Job::parse_with)).
+/// Writes a job as [`draft`] does, for a program or tools that the caller provides: the job is complete only with them
+/// ([`Job::parse_with`](crate::Job::parse_with)).
 ///
 /// # Errors
 /// As [`draft`].

@@ -73,9 +73,11 @@ pub struct Job {
     pub stock: Stock,
     /// The tools by number.
     pub tools: BTreeMap<u32, Tool>,
-    /// Shanks and holders, by the numbers of their tools, in the frame of the tool. They move with it and must not touch anything.
+    /// Shanks and holders, by the numbers of their tools, in the frame of the tool. They move with it and must not
+    /// touch anything.
     pub bodies: BTreeMap<u32, Vec<Body>>,
-    /// How the part is clamped, one after the other: at least one. All coordinates of a job are those of the part, which stays where it is.
+    /// How the part is clamped, one after the other: at least one. All coordinates of a job are those of the part,
+    /// which stays where it is.
     pub setups: Vec<Setup>,
     /// Whether the job lists its set-ups. If not, all is in the only one.
     pub has_setups: bool,

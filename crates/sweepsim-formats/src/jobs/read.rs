@@ -13,7 +13,8 @@ use crate::text::{self, SpanTree};
 
 /// The default tolerance, in units of the job.
 const TOLERANCE: f64 = 1e-6;
-/// The largest number of a job, in millimetres where it is a length: squares and volumes of anything larger could be infinite.
+/// The largest number of a job, in millimetres where it is a length: squares and volumes of anything larger could be
+/// infinite.
 const LARGEST: f64 = 1e12;
 
 /// Reads the text of a job. `file` is, or would be, its file.

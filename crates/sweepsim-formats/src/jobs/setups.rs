@@ -17,7 +17,8 @@ pub struct Setup {
     pub name: Option<String>,
     /// Where its coordinates are in those of the part.
     pub frame: Frame,
-    /// Clamps, vices and tables, which nothing may touch: in the coordinates of the part, like all that a [`Job`](super::Job) has.
+    /// Clamps, vices and tables, which nothing may touch: in the coordinates of the part, like all that a
+    /// [`Job`](super::Job) has.
     pub fixtures: Vec<Stock>,
 }
 

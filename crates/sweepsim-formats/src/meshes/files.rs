@@ -65,7 +65,8 @@ impl fmt::Display for MeshFormat {
 /// Reads a mesh: `.stl`, `.ply`, `.glb`, `.3mf` or `.vtp`. Identical corners of an STL become one vertex.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: the file cannot be read, has more than 2 GiB, its extension is unknown, or its content is invalid.
+/// [`FormatError`] with the file's name: the file cannot be read, has more than 2 GiB, its extension is unknown, or its
+/// content is invalid.
 pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));

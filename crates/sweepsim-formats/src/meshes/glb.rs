@@ -1,6 +1,7 @@
 //! GLB: glTF 2.0 in one file, for viewers.
 //!
-//! Positions and normals are `f32`. The mesh keeps its coordinates; its node turns z up and scales millimetres to metres, as glTF requires.
+//! Positions and normals are `f32`. The mesh keeps its coordinates; its node turns z up and scales millimetres to
+//! metres, as glTF requires.
 
 use std::io::{self, Write};
 
@@ -92,7 +93,8 @@ fn chunk<'a>(bytes: &mut &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
 /// Reads the triangles of all meshes of a file as one mesh, each in its own coordinates.
 ///
 /// # Errors
-/// [`FormatError`]: not a GLB file, or a truncated one; a mesh that is not made of triangles, or whose data are not in the file.
+/// [`FormatError`]: not a GLB file, or a truncated one; a mesh that is not made of triangles, or whose data are not in
+/// the file.
 pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
     coloured_glb(bytes).map(|(mesh, _)| mesh)
 }

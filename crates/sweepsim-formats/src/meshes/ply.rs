@@ -1,7 +1,8 @@
 //! PLY: vertices with normals and a flag for those that a tool cut, and triangles.
 //!
-//! Written as binary little-endian; positions are `double`, so that a mesh is read back exactly, and normals are `float`. The reader also
-//! accepts the other usual forms: ASCII or binary of either byte order, further elements and properties, polygons.
+//! Written as binary little-endian; positions are `double`, so that a mesh is read back exactly, and normals are
+//! `float`. The reader also accepts the other usual forms: ASCII or binary of either byte order, further elements and
+//! properties, polygons.
 
 use std::io::Write;
 

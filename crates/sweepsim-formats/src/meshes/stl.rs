@@ -23,7 +23,8 @@ type Triangle = [[f64; 3]; 3];
 /// Reads the triangles of an STL file, in its own units.
 ///
 /// # Errors
-/// [`FormatError`]: the file cannot be read, or is not STL (with the line of an ASCII file); coordinates that are not finite.
+/// [`FormatError`]: the file cannot be read, or is not STL (with the line of an ASCII file); coordinates that are not
+/// finite.
 pub fn read_stl(file: &Path) -> Result<TriangleSoup, FormatError> {
     let bytes = whole::read(file, whole::DATA)?;
     parse_stl(&bytes).map_err(|error| error.in_file(file))

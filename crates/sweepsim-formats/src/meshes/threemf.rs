@@ -1,4 +1,5 @@
-//! 3MF, for additive manufacturing. Written in millimetres as one object, with numbers in the shortest form that reads back exactly.
+//! 3MF, for additive manufacturing. Written in millimetres as one object, with numbers in the shortest form that reads
+//! back exactly.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,7 +23,8 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
-/// Writes a mesh. 3MF needs triangles that share vertices, as [`TriDexels::surface`](sweepsim_dexel::TriDexels::surface) makes them.
+/// Writes a mesh. 3MF needs triangles that share vertices, as
+/// [`TriDexels::surface`](sweepsim_dexel::TriDexels::surface) makes them.
 ///
 /// # Errors
 /// Those of the writer; a triangle with missing vertices.
@@ -50,17 +52,18 @@ pub fn write_3mf(mesh: &Mesh, writer: &mut (impl Write + ?Sized)) -> io::Result<
     archive::write(&entries, writer)
 }
 
-/// Reads the mesh of a file with one object, without components or transformations. The archive may be compressed. Lengths are
-/// converted to millimetres.
+/// Reads the mesh of a file with one object, without components or transformations. The archive may be compressed.
+/// Lengths are converted to millimetres.
 ///
 /// # Errors
-/// [`FormatError`]: not an archive, or one without a model; several objects, components or transformations; vertices that are not
-/// finite; triangles with missing vertices.
+/// [`FormatError`]: not an archive, or one without a model; several objects, components or transformations; vertices
+/// that are not finite; triangles with missing vertices.
 pub fn read_3mf(bytes: &[u8]) -> Result<Mesh, FormatError> {
     coloured_3mf(bytes).map(|(mesh, _)| mesh)
 }
 
-/// Reads a mesh with the colour of each triangle: that of its base material or its colour group, if all its corners have the same.
+/// Reads a mesh with the colour of each triangle: that of its base material or its colour group, if all its corners
+/// have the same.
 pub(crate) fn coloured_3mf(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError> {
     let mut archive = Archive::read(bytes)?;
     let model = model_entry(&mut archive)?;

@@ -96,12 +96,12 @@ fn whole((kind, bytes): (&str, &[u8])) -> Option<Vec<i64>> {
     }
 }
 
-/// Reads a `.vtp` with raw appended data, as [`write_vtp`] writes it, and ParaView with `raw` and without compression: one piece, with
-/// nothing but triangles.
+/// Reads a `.vtp` with raw appended data, as [`write_vtp`] writes it, and ParaView with `raw` and without compression:
+/// one piece, with nothing but triangles.
 ///
 /// # Errors
-/// [`FormatError`]: not a VTP file; data elsewhere or compressed; several pieces; polygons that are not triangles; triangles with missing
-/// vertices; coordinates that are not finite.
+/// [`FormatError`]: not a VTP file; data elsewhere or compressed; several pieces; polygons that are not triangles;
+/// triangles with missing vertices; coordinates that are not finite.
 pub fn read_vtp(bytes: &[u8]) -> Result<Mesh, FormatError> {
     const MARK: &[u8] = b"<AppendedData encoding=\"raw\">";
     let wrong = |what: &str| problem(format!("this VTP cannot be read: expected {what}"));

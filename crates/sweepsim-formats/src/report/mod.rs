@@ -195,7 +195,8 @@ pub struct ReportedFinding {
     /// Nothing is touched: it only comes nearer than it should.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub near: bool,
-    /// The courses of a rapid on which this happens, where it is not known how the machine makes them: `straight`, `dog-leg` or `both`.
+    /// The courses of a rapid on which this happens, where it is not known how the machine makes them: `straight`,
+    /// `dog-leg` or `both`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub courses: Option<String>,
     /// The program's file.
@@ -304,7 +305,8 @@ pub struct ComparisonReport {
     /// The limits for gouges and for excess, outside of regions with their own.
     #[serde(default)]
     pub limits: [f64; 2],
-    /// Connected pieces of material that are missing, or left, beyond their limits, the deepest first, gouges before excess.
+    /// Connected pieces of material that are missing, or left, beyond their limits, the deepest first, gouges before
+    /// excess.
     #[serde(default)]
     pub regions: Vec<ReportedRegion>,
     /// Area by distance.

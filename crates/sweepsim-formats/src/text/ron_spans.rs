@@ -1,8 +1,8 @@
 //! The spans of the values of a RON text.
 //!
-//! The parser returns values without positions. So that an error about a value can point at it, this scans a text that has already
-//! been parsed, and records the spans of all values as a tree. It never fails: it stops at unexpected text, and a value that is not found
-//! has the span of the nearest one around it.
+//! The parser returns values without positions. So that an error about a value can point at it, this scans a text that
+//! has already been parsed, and records the spans of all values as a tree. It never fails: it stops at unexpected text,
+//! and a value that is not found has the span of the nearest one around it.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

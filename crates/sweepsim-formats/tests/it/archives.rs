@@ -1,4 +1,5 @@
-//! Archives as other programs write them: compressed, with ZIP64 fields, with other names inside; and archives that mean harm.
+//! Archives as other programs write them: compressed, with ZIP64 fields, with other names inside; and archives that
+//! mean harm.
 
 use std::io::{Cursor, Read, Write};
 
@@ -90,7 +91,8 @@ const TETRAHEDRON: &str = r#"<?xml version="1.0"?>
 <m:triangle v1="0" v2="2" v3="1"/><m:triangle v1="0" v2="1" v3="3"/><m:triangle v1="0" v2="3" v3="2"/><m:triangle v1="1" v2="2" v3="3"/>
 </m:triangles></m:mesh></m:object></m:resources><m:build><m:item objectid="7"/></m:build></m:model>"#;
 
-/// What a search for `<vertex` would get wrong: comments, prefixes, spaces, quotes, entities, units, and where the model is.
+/// What a search for `<vertex` would get wrong: comments, prefixes, spaces, quotes, entities, units, and where the
+/// model is.
 #[test]
 fn models_are_xml() {
     let read = read_3mf(&model(TETRAHEDRON)).unwrap();

@@ -57,7 +57,8 @@ proptest! {
     }
 }
 
-/// The mark of Unicode that some editors write first is no part of a job; numbers whose squares or volumes are infinite are refused where they are.
+/// The mark of Unicode that some editors write first is no part of a job; numbers whose squares or volumes are infinite
+/// are refused where they are.
 #[test]
 fn marks_and_sizes() {
     let folder = tempfile::tempdir().unwrap();

@@ -114,7 +114,8 @@ fn extensions_say_the_format() {
     assert!(!folder.path().join("a.obj").exists());
 }
 
-/// What ParaView's reader wants of the description: arrays that lie one behind the other, each as long as its numbers need.
+/// What ParaView's reader wants of the description: arrays that lie one behind the other, each as long as its numbers
+/// need.
 #[test]
 fn lines_for_paraview_are_whole() {
     let dexels = dexels();
@@ -187,8 +188,8 @@ fn bare() -> Vec<(Vec<u8>, Reader)> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-    /// Cut off, with flipped bits, and with words of its head changed to large numbers: an error or a mesh, never a panic, and
-    /// never an allocation that the file does not pay for (the test would be killed).
+    /// Cut off, with flipped bits, and with words of its head changed to large numbers: an error or a mesh, never a
+    /// panic, and never an allocation that the file does not pay for (the test would be killed).
     #[test]
     fn damage_of_bare_formats_is_no_panic(
         cut in 0.0..1.0_f64,

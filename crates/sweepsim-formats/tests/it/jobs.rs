@@ -196,7 +196,8 @@ fn paths_in_the_job_have_times_and_rapids() {
     let path = &job.paths[0];
     assert!(path.rapid.iter().eq([true, true, false, false, false, false]));
     assert!(path.assumed_rapids && !job.paths[1].assumed_rapids);
-    // 5 inches at 10 m/min; a quarter turn at 7,200 degrees per minute; an inch at 30 inches per minute; a turn in place; nothing; a circle.
+    // 5 inches at 10 m/min; a quarter turn at 7,200 degrees per minute; an inch at 30 inches per minute; a turn in
+    // place; nothing; a circle.
     let expected = [
         Some(60.0 * 5.0 * 25.4 / 10_000.0),
         Some(60.0 * 90.0 / 7200.0),

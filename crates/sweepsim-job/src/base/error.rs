@@ -17,7 +17,8 @@ pub enum JobError {
     /// A field of the request cannot be as it is.
     #[error("{}", of_field(field, why))]
     Request {
-        /// The field, with its value where that says more: `cells`, `directions z`. The command's options have the same names.
+        /// The field, with its value where that says more: `cells`, `directions z`. The command's options have the same
+        /// names.
         field: &'static str,
         /// What was expected; or what the field is for, from `is` on.
         why: String,

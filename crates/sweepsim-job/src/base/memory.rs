@@ -31,7 +31,8 @@ pub(crate) fn check_room(grid: &Grid, advice: &str) -> Result<(), JobError> {
     }
 }
 
-/// The bytes that this process may still take, as far as Linux tells: free memory and swap, the limit of its address space, that of its control group.
+/// The bytes that this process may still take, as far as Linux tells: free memory and swap, the limit of its address
+/// space, that of its control group.
 fn available() -> Option<u64> {
     let read = |file: &str| std::fs::read_to_string(file).ok();
     let free = read("/proc/meminfo")

@@ -15,7 +15,8 @@ use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read
 use sweepsim_nc::tools::read_library;
 use sweepsim_nc::{Note, read_file};
 
-/// Describes what is in a job, program, tool library, mesh or dexel file, and what was ignored in it. `dialect` says how a program is read.
+/// Describes what is in a job, program, tool library, mesh or dexel file, and what was ignored in it. `dialect` says
+/// how a program is read.
 ///
 /// # Errors
 /// [`JobError`] if the file cannot be read.

@@ -1,7 +1,8 @@
 //! Pictures of the stock while it is cut.
 //!
-//! Each move is cut once, in the order of the program: the state that is kept is always that after a whole move. What the tool has swept of the
-//! move that it is in is removed from a copy, along chords: the picture is the only thing that is made of it.
+//! Each move is cut once, in the order of the program: the state that is kept is always that after a whole move. What
+//! the tool has swept of the move that it is in is removed from a copy, along chords: the picture is the only thing
+//! that is made of it.
 
 mod moments;
 

@@ -10,8 +10,9 @@ pub(super) struct Moment {
     pub time: f64,
 }
 
-/// `count` moments from the start of a program to its end, equally far apart by the clock, or the end alone if there is one. The clock
-/// is that of the machine if all moves have a duration, otherwise the way of the tip. Nothing for a program without moves.
+/// `count` moments from the start of a program to its end, equally far apart by the clock, or the end alone if there is
+/// one. The clock is that of the machine if all moves have a duration, otherwise the way of the tip. Nothing for a
+/// program without moves.
 pub(super) fn moments(job: &Job, count: usize) -> Vec<Moment> {
     let timed = |path: &JobPath| {
         path.seconds.len() == path.path.moves() && path.seconds.iter().all(|s| s.is_some_and(f64::is_finite))

@@ -1,6 +1,7 @@
 //! The program's course: where the tools are, and what is left of the stock at a number of moments.
 //!
-//! The moments are for show: between two of them, moves are followed as chords, and large grids are thinned. What the report says does not depend on them.
+//! The moments are for show: between two of them, moves are followed as chords, and large grids are thinned. What the
+//! report says does not depend on them.
 
 use super::PageSource;
 use super::program::Programs;

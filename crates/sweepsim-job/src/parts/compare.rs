@@ -266,7 +266,8 @@ fn regions(
     Ok(())
 }
 
-/// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has no counterpart.
+/// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has
+/// no counterpart.
 fn worst(report: &mut ComparisonReport, tolerance: f64) {
     let of_part = report.furthest_of_part.map(|furthest| furthest.distance);
     // A point of the target outside the part: there the part is missing.

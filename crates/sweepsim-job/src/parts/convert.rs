@@ -24,7 +24,8 @@ use sweepsim_nc::{Controller, Machine, Program, read_file, table, write};
 pub struct WritingOptions {
     /// The control that it is for: one of [`Controller::NAMES`]. Without one, it follows from the extension.
     pub dialect: Option<String>,
-    /// The machine that it is for: a file, or the name of a ready one. Without one, tilted tools are vectors, where the control has them.
+    /// The machine that it is for: a file, or the name of a ready one. Without one, tilted tools are vectors, where the
+    /// control has them.
     pub machine: Option<String>,
     /// Whether the coordinates of that machine's axes are written, without tip control.
     pub axes: bool,

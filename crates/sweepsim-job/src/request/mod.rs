@@ -20,7 +20,8 @@ use sweepsim_motion::{Body, Tool};
 
 /// A request: a job or a program, and what to do with it. [`Request::plan`] reads it.
 ///
-/// It is plain data with a notation (serde) as far as it refers to files. Solids given in code have none: such a request works in this process only.
+/// It is plain data with a notation (serde) as far as it refers to files. Solids given in code have none: such a
+/// request works in this process only.
 ///
 /// ```
 /// use sweepsim_job::{Output, Request, Task};
@@ -99,8 +100,8 @@ impl Request {
         Self::new(Input::File(file.into()))
     }
 
-    /// To verify a program given as text. Its name tells its format, as the extension of a file does, and is what findings call it. The text is complete:
-    /// programs that it calls are not looked for in files.
+    /// To verify a program given as text. Its name tells its format, as the extension of a file does, and is what
+    /// findings call it. The text is complete: programs that it calls are not looked for in files.
     #[must_use]
     pub fn from_program(name: impl Into<PathBuf>, text: impl Into<String>) -> Self {
         let (name, text) = (name.into(), text.into());
@@ -168,7 +169,8 @@ impl Request {
         Self { limits, ..self }
     }
 
-    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots cost time: without a report, they are not computed.
+    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots cost time: without a report, they are
+    /// not computed.
     #[must_use]
     pub fn outputs(self, outputs: impl IntoIterator<Item = Output>) -> Self {
         let outputs = outputs.into_iter().collect();
@@ -195,7 +197,8 @@ impl Request {
         Self { tolerance, ..self }
     }
 
-    /// The directions of the dexels that meshes and pictures are made of. If they are asked for, moves are judged along all of them.
+    /// The directions of the dexels that meshes and pictures are made of. If they are asked for, moves are judged along
+    /// all of them.
     #[must_use]
     pub fn directions(self, directions: impl Into<Option<Directions>>) -> Self {
         let directions = directions.into();

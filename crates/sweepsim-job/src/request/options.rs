@@ -112,8 +112,8 @@ pub struct Judging {
     pub first: bool,
     /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
     pub clearance: Option<f64>,
-    /// Whether shanks and holders, cutters in rapids and cutters beside fixtures are taken larger by half the diagonal between dexels: what they touch beside
-    /// a dexel is found as well.
+    /// Whether shanks and holders, cutters in rapids and cutters beside fixtures are taken larger by half the diagonal
+    /// between dexels: what they touch beside a dexel is found as well.
     pub sure: bool,
     /// Whether to write `moves.csv`: what each move removes, how deep and how wide, and how long it takes.
     pub moves: bool,

@@ -1,9 +1,8 @@
 //! The dexels along z, and what is said of them.
 
-use super::merge::gathered;
 use crate::base::JobError;
 use crate::request::Task;
-use crate::session::{Pieces, Session, phase, reported};
+use crate::session::{Session, phase, reported};
 use crate::shards::Gathered;
 use crate::verify::{Verified, setups, verified};
 use crate::warnings;
@@ -62,17 +61,8 @@ impl From<Verified> for Computed {
     }
 }
 
-/// Computes the dexels along z, or takes what shards have computed, and describes them in the report.
-pub(super) fn computed(session: Session, pieces: Option<Pieces>, report: &mut Report) -> Result<Computed, JobError> {
-    let done = match pieces {
-        Some(pieces) => gathered(session, pieces, report)?,
-        None => compute(session, report)?,
-    };
-    describe(session, &done, report);
-    Ok(done)
-}
-
-fn compute(session: Session, report: &mut Report) -> Result<Computed, JobError> {
+/// Computes the dexels along z.
+pub(super) fn compute(session: Session, report: &mut Report) -> Result<Computed, JobError> {
     let job = session.job;
     let cuts = session.cuts();
     let sweeping = session.request.sweep_options(job);
@@ -104,7 +94,7 @@ fn compute(session: Session, report: &mut Report) -> Result<Computed, JobError> 
 }
 
 /// Describes the result in the report.
-fn describe(session: Session, done: &Computed, report: &mut Report) {
+pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     let (job, request) = (session.job, session.request);
     report.job.clone_from(&job.name);
     report.method = request.sweeping.method.to_string();

@@ -60,7 +60,8 @@ impl Merge {
         &self.pieces[0].0
     }
 
-    /// The plan of the whole run, to be carried out with what the shards have computed. Relative names of files refer to the current folder.
+    /// The plan of the whole run, to be carried out with what the shards have computed. Relative names of files refer
+    /// to the current folder.
     ///
     /// # Errors
     /// As [`Request::plan`].

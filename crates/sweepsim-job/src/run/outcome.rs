@@ -1,6 +1,7 @@
 //! What a run found, and its outputs.
 
-use super::compute::{Computed, computed};
+use super::compute::{Computed, compute, describe};
+use super::merge::gathered;
 use super::{envelope, files};
 use crate::base::{Folder, JobError, Sink};
 use crate::frames;
@@ -69,13 +70,19 @@ impl Plan {
     /// ```
     ///
     /// # Errors
-    /// [`JobError`]: too little memory, a stock or target that cannot be made, a sweep that fails, or [`JobError::Cancelled`].
+    /// [`JobError`]: too little memory, a stock or target that cannot be made, a sweep that fails, or
+    /// [`JobError::Cancelled`].
     pub fn run(mut self, monitor: &dyn Monitor) -> Result<Outcome, JobError> {
         self.check_room()?;
         let mut report = Report::default();
         report.seconds.insert("read".to_owned(), self.reading.as_secs_f64());
         let pieces = self.pieces.take();
-        let done = computed(Session::new(&self, monitor), pieces, &mut report)?;
+        let session = Session::new(&self, monitor);
+        let done = match pieces {
+            Some(pieces) => gathered(session, pieces, &mut report)?,
+            None => compute(session, &mut report)?,
+        };
+        describe(session, &done, &mut report);
         let plan = self;
         Ok(Outcome { plan, report, done })
     }
@@ -142,10 +149,12 @@ impl Outcome {
         self.write_to(&mut Folder::create(folder)?, outputs, &())
     }
 
-    /// Makes outputs and passes them to a sink, each as soon as it is made; frames and `moves.csv` if the request asks for them. The report comes last.
+    /// Makes outputs and passes them to a sink, each as soon as it is made; frames and `moves.csv` if the request asks
+    /// for them. The report comes last.
     ///
     /// # Errors
-    /// [`JobError`]: the sink refuses an output, one cannot be made, or [`JobError::Cancelled`]. What the sink has taken by then is complete.
+    /// [`JobError`]: the sink refuses an output, one cannot be made, or [`JobError::Cancelled`]. What the sink has
+    /// taken by then is complete.
     pub fn write_to(
         &self,
         sink: &mut dyn Sink,

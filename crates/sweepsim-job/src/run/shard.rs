@@ -152,7 +152,8 @@ pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
     Ok(Tiling { sets })
 }
 
-/// Whether the result is made along x and y, too; why not, if that was not asked for: a job has no such dexels, or far too many. `heights`: of what is made.
+/// Whether the result is made along x and y, too; why not, if that was not asked for: a job has no such dexels, or far
+/// too many. `heights`: of what is made.
 pub(super) fn along_three_axes(session: Session, heights: Option<[f64; 2]>) -> Result<bool, String> {
     let (job, request) = (session.job, session.request);
     if request.outputs.contains(&Output::Tridexels) {

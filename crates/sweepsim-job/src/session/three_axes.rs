@@ -15,8 +15,8 @@ pub(crate) struct TriSolid {
     pub uncertified: usize,
 }
 
-/// The margin above and below the part, in units of the spacing. Not a whole number, so that no level of dexels lies in a flat face
-/// that is a whole number of them below the top.
+/// The margin above and below the part, in units of the spacing. Not a whole number, so that no level of dexels lies in
+/// a flat face that is a whole number of them below the top.
 const ROOM: f64 = 1.37;
 
 /// How many times as many dexels one of the other directions may have, unless it is asked for.
@@ -70,14 +70,16 @@ fn earlier(stock: &Stock) -> Vec<&Arc<[Dexels; 3]>> {
     }
 }
 
-/// Whether the dexels along x and y of a solid between these heights are so many more than those along z that they must be asked for.
+/// Whether the dexels along x and y of a solid between these heights are so many more than those along z that they must
+/// be asked for.
 pub(crate) fn too_many(grid: &Grid, range: Option<[f64; 2]>) -> bool {
     let [dx, dy] = grid.spacing();
     let [nx, ny] = grid.cells().map(|n| n as f64);
     range.is_some_and(|[low, high]| (high - low) / (dx * dy).sqrt() > MOST * nx.min(ny))
 }
 
-/// The heights of what is made: for the remaining stock those of the whole stock, which do not depend on what is cut; for a swept volume its own.
+/// The heights of what is made: for the remaining stock those of the whole stock, which do not depend on what is cut;
+/// for a swept volume its own.
 pub(crate) fn heights(task: Task, job: &Job, along_z: &Dexels) -> Option<[f64; 2]> {
     match task {
         Task::Simulate | Task::Verify => stock_heights(job),
@@ -102,7 +104,8 @@ fn ends(dexels: &Dexels) -> Option<[f64; 2]> {
         })
 }
 
-/// The box and the cells of dexels along three axes: on this grid along z, over these heights and a margin, with the same distances along the others.
+/// The box and the cells of dexels along three axes: on this grid along z, over these heights and a margin, with the
+/// same distances along the others.
 pub(crate) fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
     let [dx, dy] = grid.spacing();
     let step = (dx * dy).sqrt();

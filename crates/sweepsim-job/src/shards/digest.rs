@@ -20,8 +20,8 @@ impl Write for Digesting {
 
 /// The identity of a run.
 ///
-/// The digest is of all values of the job as it was read, so of the content of every file that it refers to. Their notation is that of this version of
-/// the program, which is compared as well.
+/// The digest is of all values of the job as it was read, so of the content of every file that it refers to. Their
+/// notation is that of this version of the program, which is compared as well.
 ///
 /// # Errors
 /// [`JobError`] if the request has no notation.

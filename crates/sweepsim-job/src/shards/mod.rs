@@ -1,4 +1,5 @@
-//! Runs in shards: each process computes some tiles of the grid and leaves a piece; pieces are joined to what one run would have left.
+//! Runs in shards: each process computes some tiles of the grid and leaves a piece; pieces are joined to what one run
+//! would have left.
 //!
 //! Tiles do not know of each other, neither in one run nor in shards, so the division cannot change the result.
 

@@ -13,7 +13,8 @@ use sweepsim_formats::Job;
 pub(crate) enum Purpose {
     /// What is left of the stock.
     Cut,
-    /// The same, and which moves do harm on the way; what each move does, and how the rest differs from the target, if asked for.
+    /// The same, and which moves do harm on the way; what each move does, and how the rest differs from the target, if
+    /// asked for.
     Judge {
         each_move: bool,
         compare: Option<AreaShare>,
@@ -38,8 +39,8 @@ pub(crate) struct Tiling {
     pub sets: Vec<TilingSet>,
 }
 
-/// What work on a tile costs, in solved lines: a move over it, besides its lines, with a tool of revolution and with any other; and each line of the tile,
-/// besides the moves.
+/// What work on a tile costs, in solved lines: a move over it, besides its lines, with a tool of revolution and with
+/// any other; and each line of the tile, besides the moves.
 const MOVE: f64 = 300.0;
 const FREE_FORM_MOVE: f64 = 3_000.0;
 const LINE: f64 = 0.5;
@@ -82,7 +83,8 @@ impl TilingSet {
         Ok(dexels)
     }
 
-    /// An estimate of the work on each tile: how many lines of it the boxes of moves cover that reach as low as the stock.
+    /// An estimate of the work on each tile: how many lines of it the boxes of moves cover that reach as low as the
+    /// stock.
     fn work(&self, cuts: &[Cut], stock: &Stock) -> Vec<f64> {
         let [rows, columns] = [1, 0].map(|k| starts(self.tiles.iter().map(|tile| tile.first()[k])));
         let mut work: Vec<f64> = self.tiles.iter().map(|tile| LINE * tile.len() as f64).collect();
@@ -178,7 +180,8 @@ impl Tiling {
         self.weighed(job, cuts).iter().map(|(work, _)| work).sum()
     }
 
-    /// The directions and numbers of the tiles of a shard, sorted: the tile with the most work goes to the shard that has the least so far, then the next.
+    /// The directions and numbers of the tiles of a shard, sorted: the tile with the most work goes to the shard that
+    /// has the least so far, then the next.
     pub fn share(&self, shard: ShardNumber, job: &Job, cuts: &[Cut]) -> Vec<(usize, usize)> {
         dealt(self.weighed(job, cuts), shard)
     }

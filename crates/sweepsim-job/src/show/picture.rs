@@ -29,7 +29,8 @@ pub(crate) fn share(
     }
 }
 
-/// A mesh of fewer triangles, nowhere further than `deviation` from this one; the same mesh without one. A note says if none was found.
+/// A mesh of fewer triangles, nowhere further than `deviation` from this one; the same mesh without one. A note says if
+/// none was found.
 pub(crate) fn decimated(mesh: &Mesh, deviation: Option<f64>) -> Result<(Cow<'_, Mesh>, Option<String>), MeshError> {
     let Some(deviation) = deviation else {
         return Ok((Cow::Borrowed(mesh), None));
@@ -62,10 +63,11 @@ pub(crate) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
     })
 }
 
-/// The picture of a part as PNG: coloured by what made its faces, or by a value per vertex on a scale of plus and minus a range.
+/// The picture of a part as PNG: coloured by what made its faces, or by a value per vertex on a scale of plus and minus
+/// a range.
 ///
-/// A section that does not meet the part is left out, and said in the list. The picture is given up, as an interruption, if `go_on`
-/// breaks.
+/// A section that does not meet the part is left out, and said in the list. The picture is given up, as an
+/// interruption, if `go_on` breaks.
 pub(crate) fn picture(
     options: &ViewOptions,
     mesh: &Mesh,

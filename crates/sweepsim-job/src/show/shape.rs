@@ -100,7 +100,8 @@ fn revolved(outline: &[[f64; 2]]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// The same triangles with one vertex for all that are in the same place, up to a nanometre, and without those that vanish.
+/// The same triangles with one vertex for all that are in the same place, up to a nanometre, and without those that
+/// vanish.
 fn welded(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut known = std::collections::BTreeMap::new();
     let mut kept = Vec::new();

@@ -1,4 +1,5 @@
-//! Axes of the machine beyond their limits, as findings; axes that are too slow, as a note: the machine slows the move down.
+//! Axes of the machine beyond their limits, as findings; axes that are too slow, as a note: the machine slows the move
+//! down.
 
 use super::texts::ProgramTexts;
 use super::work;
@@ -66,8 +67,8 @@ pub(super) fn findings(job: &Job, report: &mut Report, texts: &mut ProgramTexts)
     all
 }
 
-/// The findings of a path. The chords of an arc, and whatever else one block becomes, count as one move: it begins with the first of them, and goes as far
-/// as any of them.
+/// The findings of a path. The chords of an arc, and whatever else one block becomes, count as one move: it begins with
+/// the first of them, and goes as far as any of them.
 fn joined(path: &JobPath) -> Vec<AxisFinding> {
     let mut all: Vec<(AxisFinding, usize)> = Vec::new();
     for finding in &path.beyond {

@@ -10,7 +10,8 @@ use sweepsim_formats::Job;
 
 /// Steeper surfaces are walls: the component of their normal along z is smaller than this.
 const WALL: f64 = 0.1;
-/// Where lines along x and y cost more than those along z, they are so many times as far apart: a wall is wide, and how deep it was cut is exact on each line.
+/// Where lines along x and y cost more than those along z, they are so many times as far apart: a wall is wide, and how
+/// deep it was cut is exact on each line.
 const COARSE: usize = 4;
 
 /// The grids along x and y, with the box of the stock in which they look; and what is to be said of them.
@@ -20,7 +21,8 @@ pub(super) struct Aside {
     pub note: Option<String>,
 }
 
-/// The directions beside z along which moves are judged: those that were asked for; otherwise both, if the target has walls.
+/// The directions beside z along which moves are judged: those that were asked for; otherwise both, if the target has
+/// walls.
 pub(super) fn aside(session: Session, along_z: &TilingSet) -> Result<Aside, JobError> {
     let (job, request) = (session.job, session.request);
     let along = |grids| Aside { grids, note: None };

@@ -38,8 +38,8 @@ pub(crate) struct Verified {
     pub moves: Vec<MoveSummary>,
 }
 
-/// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the fixtures of each set-up as seen along each
-/// of these; and what is to be said of the directions.
+/// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the
+/// fixtures of each set-up as seen along each of these; and what is to be said of the directions.
 pub(crate) fn sets(session: Session) -> Result<(Vec<TilingSet>, Option<String>), JobError> {
     let (job, request) = (session.job, session.request);
     let (judging, tile) = (&request.judging, request.sweeping.tile);
@@ -203,7 +203,8 @@ impl Before {
     }
 }
 
-/// How the part differs from the target, on the lines along all directions on which it was compared. Known: the stock and the target along z.
+/// How the part differs from the target, on the lines along all directions on which it was compared. Known: the stock
+/// and the target along z.
 fn deviating(
     session: Session,
     (stock, target): (&Dexels, &Target),

@@ -1,4 +1,5 @@
-//! A program as it is judged: its tools with their bodies, its moves with the state of the machine, and the tiles on which they are judged.
+//! A program as it is judged: its tools with their bodies, its moves with the state of the machine, and the tiles on
+//! which they are judged.
 
 use super::{fixtures, targets};
 use crate::base::{JobError, words};
@@ -59,7 +60,8 @@ impl<'a> JudgedProgram<'a> {
         own.map(toolpath).unzip()
     }
 
-    /// Judges the program on some tiles. `target`: the same on any other grid, if it is known; `stock`: on the whole grid, likewise. `until`: the last move that matters.
+    /// Judges the program on some tiles. `target`: the same on any other grid, if it is known; `stock`: on the whole
+    /// grid, likewise. `until`: the last move that matters.
     pub fn judge(
         &self,
         set: &TilingSet,

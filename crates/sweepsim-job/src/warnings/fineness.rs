@@ -60,7 +60,8 @@ fn coarsest(job: &Job) -> f64 {
     dx.max(dy)
 }
 
-/// The radius of the tool at the height of the stock's top when it is deepest; all of its radius where that is not known.
+/// The radius of the tool at the height of the stock's top when it is deepest; all of its radius where that is not
+/// known.
 fn cut_radius(job: &Job, path: &JobPath, tool: &Tool, top: Option<f64>) -> f64 {
     let whole = tool.bounding_cylinder().radius;
     let frame = job.grid.frame();

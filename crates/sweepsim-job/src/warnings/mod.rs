@@ -1,4 +1,5 @@
-//! What is odd about a job although it can be run: each in one sentence, with the figures, and with what to do about it.
+//! What is odd about a job although it can be run: each in one sentence, with the figures, and with what to do about
+//! it.
 
 mod extent;
 mod fineness;

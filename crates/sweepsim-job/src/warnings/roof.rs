@@ -7,7 +7,8 @@ use sweepsim_dexel::{Dexels, End, Source};
 use sweepsim_formats::{Job, JobPath};
 use sweepsim_motion::Segment;
 
-/// The cosine between the tool's axis and the normal of the roof is at least this: the rim of a leaning tool makes one, too, but no wall beside it.
+/// The cosine between the tool's axis and the normal of the roof is at least this: the rim of a leaning tool makes one,
+/// too, but no wall beside it.
 const ABOVE: f64 = 0.3;
 
 /// A point of the tool counts as its end within this part of its reach: more than rounded times amount to.
@@ -66,7 +67,8 @@ fn segments(job: &Job, path: &JobPath, number: u32) -> Vec<Segment> {
     path.path.segments(number as usize, tool.reach(), deviation)
 }
 
-/// Whether the upper end of the tool touches a point of the surface of the material, whose outward normal is given, at a time of a move.
+/// Whether the upper end of the tool touches a point of the surface of the material, whose outward normal is given, at
+/// a time of a move.
 fn is_end(job: &Job, path: &JobPath, parts: &[Segment], time: f64, (place, outward): ([f64; 3], [f64; 3])) -> bool {
     let tool = &job.tools[&path.tool];
     let scaled = time * parts.len() as f64;

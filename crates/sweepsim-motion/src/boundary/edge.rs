@@ -18,9 +18,11 @@ pub enum Fold {
     Concave,
 }
 
-/// A sharp edge `C(r) = position / weight` on `[0, 1]` between the faces A and B; `C_r ×` (direction from A to B) points out.
+/// A sharp edge `C(r) = position / weight` on `[0, 1]` between the faces A and B; `C_r ×` (direction from A to B)
+/// points out.
 ///
-/// Invariants: finite forms in one variable, of degree at most 7; positive weights; normals of both faces that are perpendicular to the curve.
+/// Invariants: finite forms in one variable, of degree at most 7; positive weights; normals of both faces that are
+/// perpendicular to the curve.
 #[derive(Clone, Debug)]
 pub struct Edge {
     pub(super) position: [Bernstein; 3],
@@ -33,8 +35,9 @@ impl Edge {
     /// The edge `position / weight` with the normals of face A and of face B along it.
     ///
     /// # Errors
-    /// [`PatchError`]: forms in other than one variable, a degree above 7, weights that are not positive, normals that vanish inside or are not
-    /// perpendicular to the curve, moments that are not `C × N`. The last two are checked to within a bound on the rounding errors.
+    /// [`PatchError`]: forms in other than one variable, a degree above 7, weights that are not positive, normals that
+    /// vanish inside or are not perpendicular to the curve, moments that are not `C × N`. The last two are checked to
+    /// within a bound on the rounding errors.
     pub fn new(
         position: [Bernstein; 3],
         weight: Bernstein,

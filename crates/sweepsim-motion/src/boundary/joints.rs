@@ -1,8 +1,9 @@
 //! How the sides of patches join into a closed boundary, and which joints are sharp.
 //!
-//! Sides are cut where corners of other patches lie on them. The resulting *stretches* must join in pairs and run in opposite directions; a side
-//! that joins several others is a T-joint. Two stretches may have different parametrisations of the same curve: then the normals of one are converted
-//! to the parameter of the other, as polynomials.
+//! Sides are cut where corners of other patches lie on them. The resulting *stretches* must join in pairs and run in
+//! opposite directions; a side that joins several others is a T-joint. Two stretches may have different
+//! parametrisations of the same curve: then the normals of one are converted to the parameter of the other, as
+//! polynomials.
 //!
 //! Corners lie on sides, and sides along each other, to within the tolerance of the tool.
 
@@ -123,7 +124,8 @@ pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, Tool
     Ok(edges)
 }
 
-/// A multiple of the enclosed volume, by sums over each patch; only its sign matters, so that few points do where they leave no doubt.
+/// A multiple of the enclosed volume, by sums over each patch; only its sign matters, so that few points do where they
+/// leave no doubt.
 fn volume(patches: &[Patch]) -> f64 {
     const FEW: usize = 6;
     const MANY: usize = 24;

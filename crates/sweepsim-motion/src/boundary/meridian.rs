@@ -90,10 +90,12 @@ impl Meridian {
         }
     }
 
-    /// A piece of a spline. With `P` the homogeneous points, `ω` the weight: the direction of travel is along `T = ω P′ − P ω′`, the normal
-    /// `(T_ζ, −T_ρ)`, and the moment (over `ω`) `P_ζ T_ζ + P_ρ T_ρ`. So `N` gets the factor `ω` unless that is 1.
+    /// A piece of a spline. With `P` the homogeneous points, `ω` the weight: the direction of travel is along
+    /// `T = ω P′ − P ω′`, the normal `(T_ζ, −T_ρ)`, and the moment (over `ω`) `P_ζ T_ζ + P_ρ T_ρ`. So `N` gets the
+    /// factor `ω` unless that is 1.
     ///
-    /// With `P = (1 − t) A + t B` and `ω = (1 − t) α + t β`, `T = n (α B − A β)`, which has degree `2n − 2` and does not cancel.
+    /// With `P = (1 − t) A + t B` and `ω = (1 − t) α + t β`, `T = n (α B − A β)`, which has degree `2n − 2` and does
+    /// not cancel.
     pub(super) fn bezier(curve: &Bezier) -> Self {
         let n = curve.points.len() - 1;
         let weight = curve.weights.clone();

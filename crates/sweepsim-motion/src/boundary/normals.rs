@@ -15,8 +15,9 @@ const ROUNDINGS: f64 = 64.0;
 
 /// A field of surface normals `N` and their moments `M = F × N`, as Bernstein forms with one common positive factor.
 ///
-/// Invariants: six finite forms in the same one or two variables, of degrees that can be evaluated accurately. Whether they belong to a surface is
-/// checked when they are combined with it: by [`Patch::with_normals`](crate::Patch::with_normals) and [`Edge::new`](crate::Edge::new).
+/// Invariants: six finite forms in the same one or two variables, of degrees that can be evaluated accurately. Whether
+/// they belong to a surface is checked when they are combined with it: by
+/// [`Patch::with_normals`](crate::Patch::with_normals) and [`Edge::new`](crate::Edge::new).
 #[derive(Clone, Debug)]
 pub struct NormalField {
     pub(super) normal: [Bernstein; 3],
@@ -27,8 +28,8 @@ impl NormalField {
     /// Creates a field of these normals and moments.
     ///
     /// # Errors
-    /// [`PatchError`]: forms that are not in one or two variables, or not all in the same number, a degree above 28, coefficients that are not finite,
-    /// normals that are 0.
+    /// [`PatchError`]: forms that are not in one or two variables, or not all in the same number, a degree above 28,
+    /// coefficients that are not finite, normals that are 0.
     pub fn new(normal: [Bernstein; 3], moment: [Bernstein; 3]) -> Result<Self, PatchError> {
         let expected = normal[0].variables().clamp(1, 2);
         for (form, what) in normal
@@ -58,8 +59,9 @@ impl NormalField {
 
     /// Whether the field is normal to `position / weight` and its moments are `F × N`, up to rounding.
     ///
-    /// With `P` the position and `w` the weight, `w M − P × N`, and `w ⟨N, P′⟩ − w′ ⟨N, P⟩` for each variable, are 0. Their coefficients are computed with a
-    /// bound of their rounding errors; the caller's own roundings add `64 ε` of the largest coefficients.
+    /// With `P` the position and `w` the weight, `w M − P × N`, and `w ⟨N, P′⟩ − w′ ⟨N, P⟩` for each variable, are 0.
+    /// Their coefficients are computed with a bound of their rounding errors; the caller's own roundings add `64 ε` of
+    /// the largest coefficients.
     pub(super) fn check(&self, position: &[Bernstein; 3], weight: &Bernstein) -> Result<(), PatchError> {
         let largest = |forms: &[Bernstein; 3]| forms.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
         let (p, n, m, w) = (
@@ -140,7 +142,8 @@ pub(super) fn constant(weight: &Bernstein) -> Option<f64> {
 /// For each variable, whether the lower and the upper side of a patch is meant.
 pub(super) type Sides = [[bool; 2]; 2];
 
-/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments, with the sides whose factors were left out: see [`without_sides`].
+/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments, with the sides whose factors
+/// were left out: see [`without_sides`].
 pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalField, Sides) {
     let polynomial = constant(weight);
     let (pu, pv) = (
@@ -155,7 +158,8 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
         (both, moment)
     } else {
         let (wu, wv) = (weight.derivative(0), weight.derivative(1));
-        // The normals do not depend on the origin. About a pole or a level they vanish there without rounding, however far it is.
+        // The normals do not depend on the origin. About a pole or a level they vanish there without rounding, however
+        // far it is.
         let shifted = about_levels(position, weight);
         let (position, pu, pv, both) = match &shifted {
             None => (position, pu, pv, both),
@@ -199,8 +203,8 @@ impl ControlPoints {
             pairs.map(|(x, w)| x / w).collect()
         });
         let size = points.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-        // Halves of a rounding: one of each product with a weight, as many as a sum has terms when a B-spline is divided into patches, of both form and weight and along both axes, and one of the
-        // quotient.
+        // Halves of a rounding: one of each product with a weight, as many as a sum has terms when a B-spline is
+        // divided into patches, of both form and weight and along both axes, and one of the quotient.
         let halves = 2 * (degrees[0] + degrees[1] + 3);
         Self {
             degrees,
@@ -212,8 +216,9 @@ impl ControlPoints {
     }
 }
 
-/// `P − w c`, where coordinates of control points that are those of `c` up to rounding become exactly 0, as they would be if no product with a weight were rounded: `c` is a point that a side
-/// of the patch has shrunk to or, coordinate by coordinate, what most control points share. `None` if there is neither.
+/// `P − w c`, where coordinates of control points that are those of `c` up to rounding become exactly 0, as they would
+/// be if no product with a weight were rounded: `c` is a point that a side of the patch has shrunk to or, coordinate by
+/// coordinate, what most control points share. `None` if there is neither.
 fn about_levels(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernstein; 3]> {
     let ControlPoints {
         degrees,
@@ -260,8 +265,8 @@ fn about_levels(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernst
 /// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.
 pub(super) const POLE: f64 = 16.0;
 
-/// The same without the factors `u`, `1 − u`, `v` and `1 − v` that all normals have where a side has shrunk to a point, a pole. What remains points in
-/// a definite direction there, and bounds of it need not hold 0.
+/// The same without the factors `u`, `1 − u`, `v` and `1 − v` that all normals have where a side has shrunk to a point,
+/// a pole. What remains points in a definite direction there, and bounds of it need not hold 0.
 fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> (NormalField, Sides) {
     let mut sides = Sides::default();
     let largest = |forms: &[Bernstein; 3]| forms.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
@@ -301,7 +306,8 @@ fn side_indices([p, q]: [usize; 2], axis: usize, upper: bool) -> impl Iterator<I
     })
 }
 
-/// A form whose coefficients on one side are 0, divided by the distance from that side: with `B(n, k) = n/k · x B(n − 1, k − 1)`.
+/// A form whose coefficients on one side are 0, divided by the distance from that side: with
+/// `B(n, k) = n/k · x B(n − 1, k − 1)`.
 fn over_side(form: &Bernstein, axis: usize, upper: bool) -> Option<Bernstein> {
     let degrees = [form.degree(0), form.degree(1)];
     let n = degrees[axis];
@@ -325,7 +331,8 @@ fn dot(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> Bernstein {
     a[0].mul(&b[0]).add(&a[1].mul(&b[1])).add(&a[2].mul(&b[2]))
 }
 
-/// Whether normals in one or two variables vanish nowhere in the interior. Interior boxes are cut until the normals of each lie in a half-space; boxes at the sides may stay undecided.
+/// Whether normals in one or two variables vanish nowhere in the interior. Interior boxes are cut until the normals of
+/// each lie in a half-space; boxes at the sides may stay undecided.
 pub(super) fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
     const DEPTH: usize = 14;
     let mut stack = vec![(normal.clone(), [[0.0, 1.0]; 2], 0)];

@@ -5,9 +5,11 @@ use super::{NormalField, PatchError, Revolved, plane, recognised};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
-/// A smooth piece of a tool's boundary: `F = position / weight` on `[0, 1]²`, with `F_u × F_v` pointing out of the tool.
+/// A smooth piece of a tool's boundary: `F = position / weight` on `[0, 1]²`, with `F_u × F_v` pointing out of the
+/// tool.
 ///
-/// Invariants: finite forms in two variables, of degree at most 7; positive weights; no fold in the interior; normals perpendicular to the surface that point out.
+/// Invariants: finite forms in two variables, of degree at most 7; positive weights; no fold in the interior; normals
+/// perpendicular to the surface that point out.
 #[derive(Clone, Debug)]
 pub struct Patch {
     pub(super) position: [Bernstein; 3],
@@ -31,13 +33,14 @@ impl Patch {
     /// The patch `position / weight`, whose normal `F_u × F_v` points out of the tool.
     ///
     /// Its normals and moments are computed as Bernstein forms: with `P` the position and `w` the weight,
-    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule), and without the factor by which they vanish on a
-    /// side that has shrunk to a point. Those of a piece of a surface
-    /// of revolution about the third axis, and of a piece of a plane, which are recognised up to rounding, have a lower degree.
+    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule), and
+    /// without the factor by which they vanish on a side that has shrunk to a point. Those of a piece of a surface of
+    /// revolution about the third axis, and of a piece of a plane, which are recognised up to rounding, have a lower
+    /// degree.
     ///
     /// # Errors
-    /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the interior (it may
-    /// vanish along the sides, at poles).
+    /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the interior
+    /// (it may vanish along the sides, at poles).
     pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
         check_place(&position, &weight, 2)?;
         let found = recognised::field(&position, &weight);
@@ -75,13 +78,15 @@ impl Patch {
         })
     }
 
-    /// The patch `position / weight` with user-defined normals, for surfaces whose normals have a lower degree than [`new`](Self::new) would find.
+    /// The patch `position / weight` with user-defined normals, for surfaces whose normals have a lower degree than
+    /// [`new`](Self::new) would find.
     ///
-    /// They are verified: `field` must be normal to the surface and its moments must be `F × N`, both to within a bound on the rounding
-    /// errors; it must vanish nowhere in the interior, and point to the same side as `F_u × F_v`.
+    /// They are verified: `field` must be normal to the surface and its moments must be `F × N`, both to within a bound
+    /// on the rounding errors; it must vanish nowhere in the interior, and point to the same side as `F_u × F_v`.
     ///
     /// # Errors
-    /// [`PatchError`]: as [`new`](Self::new), and [`Moment`](PatchError::Moment), [`NotNormal`](PatchError::NotNormal), [`Inward`](PatchError::Inward).
+    /// [`PatchError`]: as [`new`](Self::new), and [`Moment`](PatchError::Moment), [`NotNormal`](PatchError::NotNormal),
+    /// [`Inward`](PatchError::Inward).
     pub fn with_normals(position: [Bernstein; 3], weight: Bernstein, field: NormalField) -> Result<Self, PatchError> {
         for form in field.normal.iter().chain(&field.moment) {
             check_form(form, "the normals", 2, usize::MAX)?;
@@ -135,8 +140,9 @@ impl Patch {
         &self.field
     }
 
-    /// The factor `s` of normals `N = s w⁴ (F_u × F_v)`, where `w` is the weight, divided by the distances `u`, `1 − u`, `v` and `1 − v` from
-    /// [sides that have shrunk to a point](Self::shrunk_sides); `None` if they have another form.
+    /// The factor `s` of normals `N = s w⁴ (F_u × F_v)`, where `w` is the weight, divided by the distances `u`,
+    /// `1 − u`, `v` and `1 − v` from [sides that have shrunk to a point](Self::shrunk_sides); `None` if they have
+    /// another form.
     #[must_use]
     pub fn product(&self) -> Option<f64> {
         match self.normals {
@@ -145,8 +151,9 @@ impl Patch {
         }
     }
 
-    /// The vector `n` of normals `N = w n`, where `w` is the weight, or `N = n` if that is constant; `None` if they have another form. Those of patches
-    /// that are flat up to rounding have this form, except slivers, parts of surfaces of revolution about the third axis, and patches whose normals a caller gave.
+    /// The vector `n` of normals `N = w n`, where `w` is the weight, or `N = n` if that is constant; `None` if they
+    /// have another form. Those of patches that are flat up to rounding have this form, except slivers, parts of
+    /// surfaces of revolution about the third axis, and patches whose normals a caller gave.
     #[must_use]
     pub fn plane(&self) -> Option<[f64; 3]> {
         match self.normals {
@@ -155,8 +162,9 @@ impl Patch {
         }
     }
 
-    /// For each variable, whether the lower and the upper side have shrunk to a point, so that normals that are a [product](Self::product) are divided by the
-    /// distance from it; none if the normals are neither a product nor those of a [plane](Self::plane).
+    /// For each variable, whether the lower and the upper side have shrunk to a point, so that normals that are a
+    /// [product](Self::product) are divided by the distance from it; none if the normals are neither a product nor
+    /// those of a [plane](Self::plane).
     #[must_use]
     pub fn shrunk_sides(&self) -> [[bool; 2]; 2] {
         self.normals.map_or_else(Sides::default, |(_, sides)| sides)

@@ -1,7 +1,8 @@
 //! Recognises patches that are pieces of a plane: their normals are those of the plane, times the weight.
 //!
-//! `F_u × F_v` is `n` times a function of many times the patch's degree, each of whose coefficients is rounded in all three components. `N = w n` and `M = P × n` have the
-//! degree of the patch, and components that are 0 wherever the plane is parallel to an axis.
+//! `F_u × F_v` is `n` times a function of many times the patch's degree, each of whose coefficients is rounded in all
+//! three components. `N = w n` and `M = P × n` have the degree of the patch, and components that are 0 wherever the
+//! plane is parallel to an axis.
 
 use super::NormalField;
 use super::normals::{ControlPoints, POLE, constant, cross};
@@ -11,14 +12,16 @@ use sweepsim_spline::Bernstein;
 /// How often a factor is divided that has coefficients of both signs.
 const DEPTH: usize = 8;
 
-/// What a patch's own control points may be off by besides, in halves of a rounding: three products with the rows of a rotation and two sums, and as many in the sums here.
+/// What a patch's own control points may be off by besides, in halves of a rounding: three products with the rows of a
+/// rotation and two sums, and as many in the sums here.
 const OWN: f64 = 10.0;
 
 /// A plane is known well enough if its points extend so many times as far as they may be off.
 const WIDE: f64 = 1024.0;
 
-/// The vector `n` of a flat patch's normals `N = w n`, of which the largest coefficient is 1, and the field; `N = n` if the weight is constant. `None` if the patch is not
-/// flat up to rounding, or if its `own` normals, which may be divided by distances from shrunk sides, are not certain to point to one side of it.
+/// The vector `n` of a flat patch's normals `N = w n`, of which the largest coefficient is 1, and the field; `N = n` if
+/// the weight is constant. `None` if the patch is not flat up to rounding, or if its `own` normals, which may be
+/// divided by distances from shrunk sides, are not certain to point to one side of it.
 pub(super) fn field(
     position: &[Bernstein; 3],
     weight: &Bernstein,
@@ -50,7 +53,8 @@ pub(super) fn field(
     ))
 }
 
-/// A vector normal to the plane of control points, if they are all in one: along an axis or across it, exactly, if such a plane holds them as well.
+/// A vector normal to the plane of control points, if they are all in one: along an axis or across it, exactly, if such
+/// a plane holds them as well.
 fn normal(control: &ControlPoints) -> Option<Vector3<f64>> {
     let all = &control.points;
     let first = Vector3::from(all.each_ref().map(|x| x[0]));
@@ -71,7 +75,8 @@ fn normal(control: &ControlPoints) -> Option<Vector3<f64>> {
         return None;
     }
     let general = along.cross(&across).try_normalize(0.0)?;
-    // With the longest step a, and b, the farthest from its line, a point is first + s a + t b with |s| ≤ 2, |t| ≤ 1 and |1 − s − t| ≤ 4: it and these may be off by 8 times as much.
+    // With the longest step a, and b, the farthest from its line, a point is first + s a + t b with |s| ≤ 2, |t| ≤ 1
+    // and |1 − s − t| ≤ 4: it and these may be off by 8 times as much.
     let holds = |normal: &Vector3<f64>| {
         let allowed = 8.0 * off * normal.lp_norm(1);
         steps.iter().all(|step| step.dot(normal).abs() <= allowed)
@@ -159,7 +164,8 @@ mod tests {
         ]
     }
 
-    /// A net in the plane about `centre`, its lower or upper side in `v` a point if there is a pole, with points off in the plane by `bumps` and out of it by `lift`, which is for one point.
+    /// A net in the plane about `centre`, its lower or upper side in `v` a point if there is a pole, with points off in
+    /// the plane by `bumps` and out of it by `lift`, which is for one point.
     fn patch(
         ([p, q], pole): ([usize; 2], Option<bool>),
         (plane, centre): (Plane, [f64; 3]),
@@ -193,7 +199,8 @@ mod tests {
     }
 
     proptest! {
-        /// Flat patches have the normals of their plane: exact zeros where it is parallel to an axis, on the same side as `F_u × F_v`, with sides shrunk to a point or without.
+        /// Flat patches have the normals of their plane: exact zeros where it is parallel to an axis, on the same side
+        /// as `F_u × F_v`, with sides shrunk to a point or without.
         #[test]
         fn flat_patches_have_the_normals_of_their_planes(
             degrees in [1_usize..5, 1_usize..5], pole in proptest::option::of(any::<bool>()), plane in planes(), centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
@@ -210,7 +217,8 @@ mod tests {
             let vector = Vector3::from(patch.plane().expect("a plane"));
             prop_assert!(patch.product().is_none());
             patch.field.check(&patch.position, &patch.weight).unwrap();
-            // Along the normal, as far as the points are: off by 8 times as much as each of them at a distance of at least 1.
+            // Along the normal, as far as the points are: off by 8 times as much as each of them at a distance of at
+            // least 1.
             let [.., up] = plane.directions();
             let off = 8.0 * 0.5 * (2.0 * (degrees[0] + degrees[1] + 3) as f64 + OWN) * f64::EPSILON * 54.0;
             let sense = if swapped { -1.0 } else { 1.0 };

@@ -1,8 +1,9 @@
 //! Recognises patches that are pieces of surfaces of revolution about the tool's axis: their normals have low degrees.
 //!
-//! With a circle `c² + s² = a²` in `u` and a meridian `ρ, ζ` over `ω` in `v`, `F = (c ρ, s ρ, a ζ) / (a ω)`, the normals are parallel to
-//! `N = (c n_ρ, s n_ρ, a n_ζ)` with `n_ρ = ζ′ω − ζω′` and `n_ζ = ρω′ − ρ′ω`, and `ω F × N = (−s m, c m, 0)` with `m = ζ n_ρ − ρ n_ζ`. `F_u × F_v` has many times
-//! that degree; its common factors, a multiple of `ρ` among them, are dropped, and with them the zeros at poles on the axis.
+//! With a circle `c² + s² = a²` in `u` and a meridian `ρ, ζ` over `ω` in `v`, `F = (c ρ, s ρ, a ζ) / (a ω)`, the
+//! normals are parallel to `N = (c n_ρ, s n_ρ, a n_ζ)` with `n_ρ = ζ′ω − ζω′` and `n_ζ = ρω′ − ρ′ω`, and
+//! `ω F × N = (−s m, c m, 0)` with `m = ζ n_ρ − ρ n_ζ`. `F_u × F_v` has many times that degree; its common factors, a
+//! multiple of `ρ` among them, are dropped, and with them the zeros at poles on the axis.
 
 use super::NormalField;
 use sweepsim_spline::Bernstein;
@@ -143,7 +144,8 @@ impl Revolution {
     }
 }
 
-/// The normals of a patch and their moments, if it is a piece of a surface of revolution about the third axis with circles in `u` or in `v`.
+/// The normals of a patch and their moments, if it is a piece of a surface of revolution about the third axis with
+/// circles in `u` or in `v`.
 pub(super) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<NormalField> {
     let alike = position.iter().all(|form| form.degrees() == weight.degrees());
     if !alike || weight.variables() != 2 {
@@ -176,7 +178,8 @@ mod tests {
     use nalgebra::Vector3;
     use proptest::prelude::*;
 
-    /// A piece of a surface of revolution: an arc of `sweep` from `start`, and homogeneous points of the meridian. Swapped, circles are in `v`.
+    /// A piece of a surface of revolution: an arc of `sweep` from `start`, and homogeneous points of the meridian.
+    /// Swapped, circles are in `v`.
     fn patch(start: f64, sweep: f64, meridian: &[[f64; 3]], swapped: bool) -> ([Bernstein; 3], Bernstein) {
         let (middle, half) = (start + 0.5 * sweep, (0.5 * sweep).cos());
         let end = start + sweep;

@@ -1,10 +1,11 @@
 //! The boundary of a tool of revolution as exact rational Bernstein patches, and the sharp edges between them.
 //!
 //! Legend (the paper's symbols): `F` position, `N` outward normal, `ρ, ζ` radius and height of the profile, `e(u)` the
-//! unit vector at azimuth `u`. Each normal comes with its *moment* `M = F × N`: `(N, M)` are the Plücker coordinates of the
-//! surface normal, and under a rigid motion with velocity `b′` of the origin and angular velocity `ω` the envelope
-//! function is `g = ⟨N, V⟩ = ⟨N, b′⟩ + ⟨M, ω⟩`: linear in them. `N` and `M` are stored with a common positive factor, in the
-//! lowest possible degree: for a surface of revolution `M = (ζ n_ρ − ρ n_ζ)(z × e)` has the degree of `F`, not that of `F × N`.
+//! unit vector at azimuth `u`. Each normal comes with its *moment* `M = F × N`: `(N, M)` are the Plücker coordinates of
+//! the surface normal, and under a rigid motion with velocity `b′` of the origin and angular velocity `ω` the envelope
+//! function is `g = ⟨N, V⟩ = ⟨N, b′⟩ + ⟨M, ω⟩`: linear in them. `N` and `M` are stored with a common positive factor,
+//! in the lowest possible degree: for a surface of revolution `M = (ζ n_ρ − ρ n_ζ)(z × e)` has the degree of `F`, not
+//! that of `F × N`.
 //!
 //! Poles are avoided where possible: a half ball at a tip has its poles on its rim, and a disk is one
 //! patch that is singular only at four points of its rim. Both lie at an azimuth that no machine axis favours.

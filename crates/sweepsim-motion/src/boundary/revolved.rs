@@ -18,12 +18,13 @@ pub struct Revolved {
 }
 
 impl Revolved {
-    /// The piece with these coefficients: cosine, sine and weight of the circle; radius, height and weight of the meridian, radius and
-    /// height of its normal, then the moment. The frame gives the rotation of its axes and its origin in the tool; `None` for the tool's frame.
+    /// The piece with these coefficients: cosine, sine and weight of the circle; radius, height and weight of the
+    /// meridian, radius and height of its normal, then the moment. The frame gives the rotation of its axes and its
+    /// origin in the tool; `None` for the tool's frame.
     ///
     /// # Errors
-    /// [`PatchError`]: numbers that are not finite, weights that are not positive, a frame that is not a rotation, normals that are not perpendicular to
-    /// the surface, moments that do not belong to them, a surface with a fold.
+    /// [`PatchError`]: numbers that are not finite, weights that are not positive, a frame that is not a rotation,
+    /// normals that are not perpendicular to the surface, moments that do not belong to them, a surface with a fold.
     pub fn new(
         circle: [[f64; 3]; 3],
         meridian: [[f64; 3]; 6],

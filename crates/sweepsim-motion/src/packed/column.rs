@@ -1,14 +1,16 @@
 //! One column of a block of rows, packed.
 //!
-//! Numbers of programs are decimals, so a column is kept as whole numbers of some decimal place, with the difference in the last digits of the binary number
-//! where a change of units or an offset has rounded it. Anything else is kept by its 64 bits. Of either, the differences between consecutive rows, or
-//! those of these differences, take few bits each; the few that take more are listed apart.
+//! Numbers of programs are decimals, so a column is kept as whole numbers of some decimal place, with the difference in
+//! the last digits of the binary number where a change of units or an offset has rounded it. Anything else is kept by
+//! its 64 bits. Of either, the differences between consecutive rows, or those of these differences, take few bits each;
+//! the few that take more are listed apart.
 
 use super::bits::{Bits, push_varint, take_varint, unzigzag, width, zigzag};
 
 /// The rows of a block.
 pub(super) const BLOCK: usize = 64;
-/// Powers of ten that are tried. All are exact, and so is a whole number below 2⁵³; their quotient is rounded once, as the decimal itself is when it is read.
+/// Powers of ten that are tried. All are exact, and so is a whole number below 2⁵³; their quotient is rounded once, as
+/// the decimal itself is when it is read.
 const DECIMALS: [f64; 10] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
 /// Whole numbers beyond this are not exact.
 const LARGEST: f64 = 9e15;

@@ -9,8 +9,9 @@ use std::ops::Range;
 
 /// Rows of `N` numbers, each kept exactly, to the last bit, in little memory.
 ///
-/// Rows are packed by blocks of 64, each column by itself: as decimals with few places where the numbers are such, and by the differences between consecutive rows.
-/// A constant column takes next to nothing, one of decimals that change a little one to three bytes a row, and one of arbitrary numbers at most 8.
+/// Rows are packed by blocks of 64, each column by itself: as decimals with few places where the numbers are such, and
+/// by the differences between consecutive rows. A constant column takes next to nothing, one of decimals that change a
+/// little one to three bytes a row, and one of arbitrary numbers at most 8.
 ///
 /// ```
 /// use sweepsim_motion::PackedRows;

@@ -8,7 +8,8 @@ use crate::pose::Pose;
 /// Shorter paths are kept as they are.
 const SHORT: usize = 1 << 12;
 
-/// Makes a [`Path`] pose by pose. A long one is packed: it takes a few bytes a move, from which [`Path::part`] makes any part of it.
+/// Makes a [`Path`] pose by pose. A long one is packed: it takes a few bytes a move, from which [`Path::part`] makes
+/// any part of it.
 ///
 /// ```
 /// use sweepsim_motion::{Law, Move, PathBuilder, Pose};

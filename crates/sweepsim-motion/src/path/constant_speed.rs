@@ -1,20 +1,24 @@
 //! Moves at constant speed: all rotations are uniform and in step with the tip, to within a stated deviation.
 //!
-//! A move is divided into `m` parts of equal duration. In each, every turn by an angle `θ` is one rational arc in a common parameter
-//! `s`. With `τ = tan(θ/4)` and `x = 2s − 1`, the fraction of the angle covered is `½ + ½ f(x)`, `f(x) = atan(τx)/atan τ`.
-//! The *time* of the part is defined by its largest angle, which is therefore exact. The others deviate:
+//! A move is divided into `m` parts of equal duration. In each, every turn by an angle `θ` is one rational arc in a
+//! common parameter `s`. With `τ = tan(θ/4)` and `x = 2s − 1`, the fraction of the angle covered is `½ + ½ f(x)`,
+//! `f(x) = atan(τx)/atan τ`. The *time* of the part is defined by its largest angle, which is therefore exact. The
+//! others deviate:
 //!
-//! - a turn by a smaller angle `θ′` is off by at most `θ′ e₃`, and a point at distance `r` from its axis by `r θ′ e₃`, because `f` increases
-//!   with `τ`, starting from `x`, and `f(x) − x ≤ (τ³/(3 atan τ)) x (1 − x²)`, so `½(f − x) ≤ e₃ = τ³/(9√3 atan τ)`;
-//! - straight displacements follow a cubic in `s`, the odd cubic with the value and the slope of `f` at both ends. The error of Hermite interpolation is
-//!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a displacement of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
+//! - a turn by a smaller angle `θ′` is off by at most `θ′ e₃`, and a point at distance `r` from its axis by `r θ′ e₃`,
+//!   because `f` increases with `τ`, starting from `x`, and `f(x) − x ≤ (τ³/(3 atan τ)) x (1 − x²)`, so
+//!   `½(f − x) ≤ e₃ = τ³/(9√3 atan τ)`;
+//! - straight displacements follow a cubic in `s`, the odd cubic with the value and the slope of `f` at both ends. The
+//!   error of Hermite interpolation is `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a displacement of length
+//!   `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
 //!
-//! The spin of a symmetric tool about its axis is arbitrary. Along an arc of the tip about (nearly) the direction of its axis, the tool turns with the
-//! arc as one rigid body: its velocity field in its own frame is then (nearly) constant, and the centre of the arc stays
-//! at one point of the tool. Without that spin the centre line would travel around the tool, with `g = 0` all along it.
+//! The spin of a symmetric tool about its axis is arbitrary. Along an arc of the tip about (nearly) the direction of
+//! its axis, the tool turns with the arc as one rigid body: its velocity field in its own frame is then (nearly)
+//! constant, and the centre of the arc stays at one point of the tool. Without that spin the centre line would travel
+//! around the tool, with `g = 0` all along it.
 //!
-//! Both decrease with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
-//! `docs/algorithms/motions.md` has the derivations.
+//! Both decrease with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`,
+//! parts join without a kink. `docs/algorithms/motions.md` has the derivations.
 
 use super::rotary::{turn, unit_axis};
 use super::{Course, Move, RotaryTable, TipArc, Turning};
@@ -93,7 +97,8 @@ impl Turns {
         one(start, cross / sine, sine.atan2(o0.dot(&o1)))
     }
 
-    /// The same with exactly the axis and the angle of an arc, if they are the same but for rounding: tool and tip then turn as one rigid body, with the same weights to the bit.
+    /// The same with exactly the axis and the angle of an arc, if they are the same but for rounding: tool and tip then
+    /// turn as one rigid body, with the same weights to the bit.
     fn with_arc(self, course: &Course) -> Self {
         /// Rounding errors of orientations that are turned by an angle, and of the turn between them.
         const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -161,7 +166,8 @@ impl Turns {
 /// A part of the turns of a tool: `Â`, `ŵ`, and the coefficients of `ŵ Ω`.
 type Turned = (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>);
 
-/// A tool's axis counts as near that of an arc if the cosine of their angle is at least this: 1.8°. Beyond that the spin costs more than it saves.
+/// A tool's axis counts as near that of an arc if the cosine of their angle is at least this: 1.8°. Beyond that the
+/// spin costs more than it saves.
 const NEAR: f64 = 0.9995;
 
 /// The angle by which a symmetric tool turns about its own axis together with an arc.
@@ -175,7 +181,8 @@ fn own_turn(from: &Pose, to: &Pose, way: &Move) -> Option<f64> {
     near.then(|| arc.angle().copysign(arc.angle() * along[0]))
 }
 
-/// Part `n` of `m` of turns, after a turn of the tool by `angle` about its own axis: `A R`, whose angular velocity is `Rᵀ Ω + ω z`.
+/// Part `n` of `m` of turns, after a turn of the tool by `angle` about its own axis: `A R`, whose angular velocity is
+/// `Rᵀ Ω + ω z`.
 fn with_own_turn((turns, weights, spins): Turned, angle: f64, n: usize, m: usize) -> Turned {
     let step = angle / m as f64;
     let start = turn(Vector3::z(), step * n as f64);

@@ -34,8 +34,8 @@ pub enum PathError {
         /// The number of poses.
         poses: usize,
     },
-    /// The angles of a machine's rotary axes are not finite, absurdly large, or do not point along the axis of a pose, or the pose gives a different
-    /// spin of the tool about its axis.
+    /// The angles of a machine's rotary axes are not finite, absurdly large, or do not point along the axis of a pose,
+    /// or the pose gives a different spin of the tool about its axis.
     #[error(
         "move {index} (counted from 0): the angles of the rotary axes are not those of the poses that it joins: expected angles within a million degrees that point along \
          the axes, and poses of tip and axis alone"

@@ -8,8 +8,8 @@ use std::borrow::Cow;
 const STRETCH: usize = 1 << 12;
 
 impl Path {
-    /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself along
-    /// [motions](Path::along).
+    /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself
+    /// along [motions](Path::along).
     ///
     /// # Panics
     /// If there is no such move.

@@ -32,7 +32,8 @@ use std::ops::Range;
 /// A sequence of at least one [`Pose`], with a move for each consecutive pair: for
 /// [`Path::new`], a straight line with SLERP of the axis (or of the full orientation, if the poses give it).
 ///
-/// Invariant: every move is determined. The axes of consecutive poses are not opposite where the axis turns the shortest way.
+/// Invariant: every move is determined. The axes of consecutive poses are not opposite where the axis turns the
+/// shortest way.
 ///
 /// ```
 /// use sweepsim_motion::{Path, PathError, Pose};
@@ -72,14 +73,15 @@ impl Path {
     /// The path through `poses`, straight and by SLERP.
     ///
     /// # Errors
-    /// [`PathError::Empty`] without a pose; [`PathError::OppositeAxes`] if two consecutive axes are within 1e-9 rad
-    /// of opposite; [`PathError::HalfTurn`] if two orientations are that close to half a turn apart; [`PathError::Mixed`] if only some
-    /// poses fix the spin of the tool about its axis.
+    /// [`PathError::Empty`] without a pose; [`PathError::OppositeAxes`] if two consecutive axes are within 1e-9 rad of
+    /// opposite; [`PathError::HalfTurn`] if two orientations are that close to half a turn apart; [`PathError::Mixed`]
+    /// if only some poses fix the spin of the tool about its axis.
     pub fn new(poses: Vec<Pose>) -> Result<Self, PathError> {
         Self::checked(poses, Ways::Slerp)
     }
 
-    /// The straight path through `poses` along which the tool turns by `law`. Rotary axes start at the angles nearest to 0.
+    /// The straight path through `poses` along which the tool turns by `law`. Rotary axes start at the angles nearest
+    /// to 0.
     ///
     /// # Errors
     /// As [`Path::new`]. With rotary axes, the axis may turn any way, but poses must consist of tip and axis only.
@@ -145,8 +147,9 @@ impl Path {
         }
     }
 
-    /// The poses, at least one. Those of a long path that was [packed](PathBuilder) are unpacked when they are first asked for, and take 80 bytes each from then on:
-    /// [`pose`](Self::pose), [`poses_in_order`](Self::poses_in_order) and [`part`](Self::part) do without.
+    /// The poses, at least one. Those of a long path that was [packed](PathBuilder) are unpacked when they are first
+    /// asked for, and take 80 bytes each from then on: [`pose`](Self::pose), [`poses_in_order`](Self::poses_in_order)
+    /// and [`part`](Self::part) do without.
     #[must_use]
     pub fn poses(&self) -> &[Pose] {
         match &self.poses {
@@ -189,8 +192,8 @@ impl Path {
         plain.map(|number| self.way(number)).chain(packed.into_iter().flatten())
     }
 
-    /// The moves in an unpacked path, and the number of the first move of that: for a long path that is [packed](PathBuilder), a [part](Self::part) with
-    /// these moves; otherwise the path itself.
+    /// The moves in an unpacked path, and the number of the first move of that: for a long path that is
+    /// [packed](PathBuilder), a [part](Self::part) with these moves; otherwise the path itself.
     ///
     /// # Panics
     /// If there are no such moves.
@@ -207,7 +210,8 @@ impl Path {
         matches!(self.poses, Poses::Packed(_))
     }
 
-    /// The path by its parts of at most so many moves, each with the number of its first move. A path that is not packed is one part, however long it is.
+    /// The path by its parts of at most so many moves, each with the number of its first move. A path that is not
+    /// packed is one part, however long it is.
     ///
     /// # Panics
     /// If `moves` is 0.
@@ -228,8 +232,8 @@ impl Path {
         }
     }
 
-    /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses. Angles of rotary axes are those of the
-    /// machine, also of a path that was [moved](Path::moved).
+    /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses.
+    /// Angles of rotary axes are those of the machine, also of a path that was [moved](Path::moved).
     #[must_use]
     pub fn way(&self, index: usize) -> Move {
         match &self.ways {
@@ -297,8 +301,8 @@ impl Path {
 
     /// The segments of move `index`, of equal duration.
     ///
-    /// SLERP moves and user-defined motions are exact. Other moves stay within `deviation` (a length) of their law at every time, for a tool that
-    /// reaches no farther than `reach` from its tip, provided that a million parts suffice.
+    /// SLERP moves and user-defined motions are exact. Other moves stay within `deviation` (a length) of their law at
+    /// every time, for a tool that reaches no farther than `reach` from its tip, provided that a million parts suffice.
     ///
     /// # Panics
     /// If there is no such move.
@@ -307,8 +311,9 @@ impl Path {
         self.parts(index, (reach, false), deviation)
     }
 
-    /// As [`segments`](Self::segments), for a tool that is symmetric about its axis: its spin is arbitrary, and chosen so that the motion is easiest to solve.
-    /// Along an arc of the tip about (nearly) the direction of the tool's axis, the tool turns with the arc as one rigid body.
+    /// As [`segments`](Self::segments), for a tool that is symmetric about its axis: its spin is arbitrary, and chosen
+    /// so that the motion is easiest to solve. Along an arc of the tip about (nearly) the direction of the tool's axis,
+    /// the tool turns with the arc as one rigid body.
     ///
     /// # Panics
     /// If there is no such move.

@@ -24,8 +24,8 @@ pub enum Course {
 /// How the tool turns during a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Turning {
-    /// The axis (or the full orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
-    /// not quite constant. Along an arc of the tip it is the same as [`Even`](Self::Even).
+    /// The axis (or the full orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its
+    /// angular speed is not quite constant. Along an arc of the tip it is the same as [`Even`](Self::Even).
     #[default]
     Slerp,
     /// The same at constant angular speed, in step with the tip.

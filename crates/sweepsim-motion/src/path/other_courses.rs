@@ -41,7 +41,8 @@ pub struct OtherCourses {
 }
 
 impl OtherCourses {
-    /// Adds the course of a move: its poses, each with the time at which it is reached, as a fraction of the whole. All its moves are straight.
+    /// Adds the course of a move: its poses, each with the time at which it is reached, as a fraction of the whole. All
+    /// its moves are straight.
     ///
     /// # Errors
     /// Those of [`Path::new`]. Then nothing is added.

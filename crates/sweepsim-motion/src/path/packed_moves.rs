@@ -18,7 +18,8 @@ use std::ops::Range;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackedMoves {
-    /// Kind, centre, normal and angle of an arc, and the angles of rotary axes. Straight moves repeat what the move before had.
+    /// Kind, centre, normal and angle of an arc, and the angles of rotary axes. Straight moves repeat what the move
+    /// before had.
     rows: PackedRows<12>,
     last: [f64; 12],
 }

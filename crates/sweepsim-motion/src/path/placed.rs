@@ -9,7 +9,8 @@ use std::ops::Range;
 /// How far a rotation may be from one.
 const SKEW: f64 = 1e-12;
 
-/// A path and where it is. Its moves are made in its own frame, where the axes of the machine have their directions, and then carried over.
+/// A path and where it is. Its moves are made in its own frame, where the axes of the machine have their directions,
+/// and then carried over.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placed {
     pub own: Path,
@@ -18,8 +19,9 @@ pub(super) struct Placed {
 }
 
 impl Path {
-    /// The same path in another place: rotated by `turn` about the origin, then shifted. The part stays where it is, so this turns what a program says in the
-    /// frame of a set-up into the frame of the part. Rotary axes keep their directions in the path's own frame.
+    /// The same path in another place: rotated by `turn` about the origin, then shifted. The part stays where it is, so
+    /// this turns what a program says in the frame of a set-up into the frame of the part. Rotary axes keep their
+    /// directions in the path's own frame.
     ///
     /// Turns by multiples of 90° are exact.
     ///
@@ -100,7 +102,8 @@ impl Placed {
         own.iter().map(|part| part.moved(&self.turn, self.shift)).collect()
     }
 
-    /// A bound on the coordinates of the tip: a coordinate after a turn is at most as large as the distance from the origin before it.
+    /// A bound on the coordinates of the tip: a coordinate after a turn is at most as large as the distance from the
+    /// origin before it.
     pub fn size(&self) -> f64 {
         3.0_f64.sqrt() * self.own.size() + self.shift.amax()
     }

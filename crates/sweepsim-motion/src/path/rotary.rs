@@ -4,8 +4,9 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The rotary axes of a machine's table, which determine what its angles mean. With tip control, a program's `xyz` is the tip
-/// in the part's frame. At given angles of the tilting axis (A or B) and of C, the axis from the tip to the holder is
+/// The rotary axes of a machine's table, which determine what its angles mean. With tip control, a program's `xyz` is
+/// the tip in the part's frame. At given angles of the tilting axis (A or B) and of C, the axis from the tip to the
+/// holder is
 ///
 /// | table | axis |
 /// | --- | --- |
@@ -96,8 +97,8 @@ impl RotaryTable {
         }
     }
 
-    /// Angles `[tilt, C]`, in degrees, at which the tool points along `axis` (of any length): of all solutions, the one with the
-    /// smallest total travel of both axes from `near`. If C is arbitrary, it stays.
+    /// Angles `[tilt, C]`, in degrees, at which the tool points along `axis` (of any length): of all solutions, the one
+    /// with the smallest total travel of both axes from `near`. If C is arbitrary, it stays.
     #[must_use]
     pub fn angles(self, axis: [f64; 3], near: [f64; 2]) -> [f64; 2] {
         let [x, y, z] = axis;

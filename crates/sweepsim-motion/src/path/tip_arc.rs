@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use thiserror::Error;
 
-/// An arc of the tip about an axis through `centre`. Any difference between its end and the end of the move is added at constant speed
-/// (the rise of a helix, or the small difference of two radii in a program).
+/// An arc of the tip about an axis through `centre`. Any difference between its end and the end of the move is added at
+/// constant speed (the rise of a helix, or the small difference of two radii in a program).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipArc {
     centre: Vector3<f64>,
@@ -48,7 +48,8 @@ pub enum ArcError {
 const RADII: f64 = 1e-3;
 
 impl TipArc {
-    /// An arc by `angle` (radians, right-handed about `normal`) about the axis through `centre` along `normal` (of any length).
+    /// An arc by `angle` (radians, right-handed about `normal`) about the axis through `centre` along `normal` (of any
+    /// length).
     ///
     /// # Errors
     /// [`ArcError`]: numbers that are not finite, no direction, no angle.
@@ -71,11 +72,13 @@ impl TipArc {
         })
     }
 
-    /// The arc from `from` to `to` about the axis through `centre` along `normal`: right-handed for `turns > 0`, left-handed for
-    /// `turns < 0`, with more than one full turn for `|turns| > 1`. If both ends lie in the same direction from the axis, it is a full turn.
+    /// The arc from `from` to `to` about the axis through `centre` along `normal`: right-handed for `turns > 0`,
+    /// left-handed for `turns < 0`, with more than one full turn for `|turns| > 1`. If both ends lie in the same
+    /// direction from the axis, it is a full turn.
     ///
     /// # Errors
-    /// [`ArcError`]: as [`new`](Self::new), and ends on the axis or with distances from it that differ by more than a thousandth.
+    /// [`ArcError`]: as [`new`](Self::new), and ends on the axis or with distances from it that differ by more than a
+    /// thousandth.
     ///
     /// ```
     /// use sweepsim_motion::TipArc;
@@ -112,9 +115,10 @@ impl TipArc {
         Self::new(centre, normal, sign * (angle + full * (f64::from(turns.abs()) - 1.0)))
     }
 
-    /// The same arc about a centre at the same distance from both of its ends, which programs give with few decimals: moved along the chord, with the angle
-    /// between them from there. Points of the path move about as far as the arc missed its end; where they would move farther (ends of a long arc that lie
-    /// close together), the arc stays as it is.
+    /// The same arc about a centre at the same distance from both of its ends, which programs give with few decimals:
+    /// moved along the chord, with the angle between them from there. Points of the path move about as far as the arc
+    /// missed its end; where they would move farther (ends of a long arc that lie close together), the arc stays as it
+    /// is.
     ///
     /// ```
     /// use sweepsim_motion::TipArc;

@@ -3,8 +3,8 @@
 use super::{Profile, ProfileSegment, Shape};
 
 impl Profile {
-    /// The outline of the part of the solid below a height. `None` unless exactly one straight segment rises through that height, with
-    /// everything before it below and everything after it above: then the section there is one disc.
+    /// The outline of the part of the solid below a height. `None` unless exactly one straight segment rises through
+    /// that height, with everything before it below and everything after it above: then the section there is one disc.
     ///
     /// ```
     /// use sweepsim_motion::{Profile, ProfileSegment};

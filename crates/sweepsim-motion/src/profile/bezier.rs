@@ -1,14 +1,16 @@
 //! Splines of a profile: rational Bézier curves in `(ρ, ζ)`, and their invariants.
 //!
-//! With positive weights, the direction of travel is a sum of the legs of the control polygon with nonnegative factors (Floater, *Derivatives of
-//! rational Bézier curves*, CAGD 9, 1991). So a curve whose legs lie in an open half-plane neither stops nor meets itself, and neither do two joined
-//! curves whose legs together lie in one. Curves that fail this are halved.
+//! With positive weights, the direction of travel is a sum of the legs of the control polygon with nonnegative factors
+//! (Floater, *Derivatives of rational Bézier curves*, CAGD 9, 1991). So a curve whose legs lie in an open half-plane
+//! neither stops nor meets itself, and neither do two joined curves whose legs together lie in one. Curves that fail
+//! this are halved.
 
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
 use sweepsim_spline::kernel;
 
-/// A rational Bézier curve. Invariants: as many points as positive weights, at least two; the first and the last weight are 1.
+/// A rational Bézier curve. Invariants: as many points as positive weights, at least two; the first and the last weight
+/// are 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Bezier {
     pub points: Vec<Vector2<f64>>,
@@ -19,7 +21,8 @@ pub(crate) struct Bezier {
 const STOPS: f64 = 1e-6;
 
 impl Bezier {
-    /// In standard form: a change of the parameter makes both end weights 1 (Farin, *Curves and Surfaces for CAGD*, §13.5).
+    /// In standard form: a change of the parameter makes both end weights 1 (Farin, *Curves and Surfaces for CAGD*,
+    /// §13.5).
     pub(super) fn standard(rho: &[f64], zeta: &[f64], weight: &[f64]) -> Self {
         let n = weight.len() - 1;
         let points = (0..=n).map(|i| Vector2::new(rho[i] / weight[i], zeta[i] / weight[i]));

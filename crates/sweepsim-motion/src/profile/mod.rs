@@ -16,7 +16,8 @@ use nalgebra::Vector2;
 use piece::crosses;
 use self_contact::Outline;
 
-/// How far a profile may cross the axis, in parts of its size: some thousand roundings, as of arcs that end on the axis.
+/// How far a profile may cross the axis, in parts of its size: some thousand roundings, as of arcs that end on the
+/// axis.
 const ROUNDING: f64 = 1e-12;
 
 /// The direction of an arc, seen with `ρ` to the right and `ζ` up.
@@ -50,7 +51,8 @@ pub enum ProfileSegment {
     Spline {
         /// Its degree, from 1 to 7.
         degree: usize,
-        /// As many as points plus `degree + 1`, clamped: the first and the last occur `degree + 1` times. `None` spaces them evenly.
+        /// As many as points plus `degree + 1`, clamped: the first and the last occur `degree + 1` times. `None` spaces
+        /// them evenly.
         knots: Option<Vec<f64>>,
         /// Control points: the first is the end of the previous segment, the last the end of this one.
         points: Vec<[f64; 2]>,
@@ -69,7 +71,8 @@ impl ProfileSegment {
     }
 }
 
-/// The outline of a solid of revolution, made of lines, arcs and splines: from the tip on the axis to the top on the axis, with the material on its left.
+/// The outline of a solid of revolution, made of lines, arcs and splines: from the tip on the axis to the top on the
+/// axis, with the material on its left.
 ///
 /// Invariants: finite; `ρ ≥ 0`, with `ρ = 0` only at the two ends; the end lies above the start; no segment
 /// is degenerate; the profile does not cross or touch itself. What a move costs grows with the number of segments:
@@ -87,7 +90,8 @@ impl Profile {
     /// A profile from `start` on the axis, through `segments`, to the top on the axis.
     ///
     /// # Errors
-    /// [`ProfileError`]: the profile is open, upside down, crosses the axis or itself, has too many segments or an invalid one.
+    /// [`ProfileError`]: the profile is open, upside down, crosses the axis or itself, has too many segments or an
+    /// invalid one.
     pub fn new(start: [f64; 2], segments: Vec<ProfileSegment>) -> Result<Self, ProfileError> {
         let found = segments.iter().map(ProfileSegment::size).sum();
         if found > Self::MOST_SEGMENTS {

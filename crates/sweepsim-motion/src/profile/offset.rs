@@ -1,8 +1,9 @@
 //! Profiles at a distance: the outline of all points no farther than that from a solid of revolution.
 //!
-//! Segments move outward along their normals, and arcs join them at convex corners. At concave ones the pieces intersect: they are cut there, and what is
-//! nearer to the profile than the distance is dropped (Tiller, Hanson 1984, *Offsets of two-dimensional profiles*). What remains is joined from the axis to
-//! the axis. Caves that the offset closes are filled.
+//! Segments move outward along their normals, and arcs join them at convex corners. At concave ones the pieces
+//! intersect: they are cut there, and what is nearer to the profile than the distance is dropped (Tiller, Hanson
+//! 1984, *Offsets of two-dimensional profiles*). What remains is joined from the axis to the axis. Caves that the
+//! offset closes are filled.
 
 use super::{Profile, ProfileError, ProfileSegment, Turn};
 use nalgebra::Vector2;
@@ -216,8 +217,8 @@ impl Piece {
 }
 
 impl Profile {
-    /// The profile of all points no farther than `distance` from the solid: exact, of lines and arcs. Profiles with splines become the offset of the cylinder
-    /// that holds them, which is larger.
+    /// The profile of all points no farther than `distance` from the solid: exact, of lines and arcs. Profiles with
+    /// splines become the offset of the cylinder that holds them, which is larger.
     ///
     /// ```
     /// use sweepsim_motion::{Profile, ProfileSegment};
@@ -230,7 +231,8 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError`]: `distance` is negative or not finite, or so large or small beside the profile that numbers cannot hold the result.
+    /// [`ProfileError`]: `distance` is negative or not finite, or so large or small beside the profile that numbers
+    /// cannot hold the result.
     pub fn offset(&self, distance: f64) -> Result<Self, ProfileError> {
         if distance == 0.0 {
             return Ok(self.clone());

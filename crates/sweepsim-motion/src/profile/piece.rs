@@ -39,12 +39,14 @@ const LEAST: f64 = 1e-100;
 /// The distances of an arc's two ends from its centre may differ by this fraction of the radius.
 const ARC_SLACK: f64 = 1e-6;
 
-/// Points this close, in parts of the profile's size or of a segment's parameter, count as one: far above rounding, far below what a profile means.
+/// Points this close, in parts of the profile's size or of a segment's parameter, count as one: far above rounding, far
+/// below what a profile means.
 const NEAR: f64 = 1e-9;
-/// Lines with a smaller sine between them are parallel: rounding alone would move their intersection by more than [`NEAR`].
+/// Lines with a smaller sine between them are parallel: rounding alone would move their intersection by more than
+/// [`NEAR`].
 const PARALLEL: f64 = 1e-12;
-/// Around a tangent joint, intersections this close to it, in parts of the shorter piece, are the joint itself: a double intersection is resolved
-/// only to the square root of the rounding error.
+/// Around a tangent joint, intersections this close to it, in parts of the shorter piece, are the joint itself: a
+/// double intersection is resolved only to the square root of the rounding error.
 const AT_JOINT: f64 = 1e-4;
 
 impl OutlinePiece {
@@ -92,7 +94,8 @@ impl OutlinePiece {
                         to: rb,
                     });
                 }
-                // Files have few digits, so the centre is moved to the bisector of the ends, which then lie exactly on one circle.
+                // Files have few digits, so the centre is moved to the bisector of the ends, which then lie exactly on
+                // one circle.
                 let chord = (to - from).normalize();
                 let centre = centre + chord * (from + (to - from) * 0.5 - centre).dot(&chord);
                 let (a, b) = (from - centre, to - centre);

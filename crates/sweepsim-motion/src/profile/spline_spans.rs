@@ -12,7 +12,8 @@ pub(super) struct OutlineSpan {
 
 /// Highest degree: that of the patches of other tools.
 const MOST: usize = 7;
-/// The normal has the third power of the weight as a factor; with a smaller weight (relative to the largest), it would be lost in rounding.
+/// The normal has the third power of the weight as a factor; with a smaller weight (relative to the largest), it would
+/// be lost in rounding.
 const LEAST_WEIGHT: f64 = 1e-4;
 /// Parts of the outline closer than this fraction of its length count as touching.
 pub(super) const NEAR: f64 = 1e-9;

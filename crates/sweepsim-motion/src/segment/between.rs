@@ -5,8 +5,8 @@ use crate::pose::Pose;
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Smaller angles between poses count as 0: rounding of the axes would decide in which direction the tool moves. A point as far from the tip as the largest coordinate moves by a six-hundredth of the finest
-/// tolerance.
+/// Smaller angles between poses count as 0: rounding of the axes would decide in which direction the tool moves. A
+/// point as far from the tip as the largest coordinate moves by a six-hundredth of the finest tolerance.
 pub(crate) const NO_TURN: f64 = 1e-13;
 
 /// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° in either direction, and `κ`.
@@ -57,7 +57,8 @@ pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>
 }
 
 impl Segment {
-    /// The segments from one pose to the next: one, or 2, 4, … equal parts if the axis (or the orientation) turns by more than 90°.
+    /// The segments from one pose to the next: one, or 2, 4, … equal parts if the axis (or the orientation) turns by
+    /// more than 90°.
     ///
     /// Turns by less than 1e-13 are left out.
     ///

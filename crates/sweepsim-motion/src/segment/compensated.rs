@@ -1,4 +1,5 @@
-//! Products that do not cancel: a matrix times a vector as if computed with twice the digits (Ogita, Rump, Oishi 2005, *Accurate sum and dot product*).
+//! Products that do not cancel: a matrix times a vector as if computed with twice the digits (Ogita, Rump, Oishi
+//! 2005, *Accurate sum and dot product*).
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,7 +41,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     }
 }
 
-/// `Aᵀ v`, each component rounded about once, however small it is: a velocity in the frame of a tool whose orientation is `A`.
+/// `Aᵀ v`, each component rounded about once, however small it is: a velocity in the frame of a tool whose orientation
+/// is `A`.
 ///
 /// The sign of a component that only a displacement of the tip decides is thus the same wherever it is needed.
 #[must_use]

@@ -1,4 +1,5 @@
-//! Lists of Bernstein coefficients over `t` in `[0, 1]`: numbers, vectors and matrices, computed by [`sweepsim_spline::kernel`].
+//! Lists of Bernstein coefficients over `t` in `[0, 1]`: numbers, vectors and matrices, computed by
+//! [`sweepsim_spline::kernel`].
 
 use std::ops::{Add, Mul};
 use sweepsim_spline::kernel::{self, Coefficient};

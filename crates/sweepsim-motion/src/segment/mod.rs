@@ -1,9 +1,9 @@
 //! A rigid motion for `t` in `[0, 1]` in Bernstein form: moves between poses consist of these.
 //!
-//! Legend: `A(t) = Â/ŵ` turns tool coordinates into space, `b(t)` is the tip, `Ω` the angular velocity in the tool's frame
-//! (`Aᵀ A′ = [Ω]×`), `k` the axis and `θ` the angle of a turn, `w, c, s` the quadratic Bernstein forms with `cos α = c/w`,
-//! `sin α = s/w`. Because `c s′ − s c′ = κ w` with the constant `κ = 2 sin(θ/2)`, a turn about one axis has the angular
-//! velocity `(κ/w) k`.
+//! Legend: `A(t) = Â/ŵ` turns tool coordinates into space, `b(t)` is the tip, `Ω` the angular velocity in the tool's
+//! frame (`Aᵀ A′ = [Ω]×`), `k` the axis and `θ` the angle of a turn, `w, c, s` the quadratic Bernstein forms with
+//! `cos α = c/w`, `sin α = s/w`. Because `c s′ − s c′ = κ w` with the constant `κ = 2 sin(θ/2)`, a turn about one axis
+//! has the angular velocity `(κ/w) k`.
 
 mod between;
 mod compensated;
@@ -19,10 +19,11 @@ pub(crate) use rates::spins;
 use forms::value;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// A rigid motion for `t` in `[0, 1]`: the tip follows a polynomial or rational curve, the orientation is a rational matrix.
+/// A rigid motion for `t` in `[0, 1]`: the tip follows a polynomial or rational curve, the orientation is a rational
+/// matrix.
 ///
-/// The most common and cheapest kind [is an arc](Segment::is_arc): the tip moves on a straight line, the axis on a great circle as one
-/// rational arc of at most 90°.
+/// The most common and cheapest kind [is an arc](Segment::is_arc): the tip moves on a straight line, the axis on a
+/// great circle as one rational arc of at most 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     tips: [Vector3<f64>; 2],
@@ -122,7 +123,8 @@ impl Segment {
         self
     }
 
-    /// Whether it is of the simplest kind: the tip moves on a straight line at constant speed, with a rotation about at most one axis.
+    /// Whether it is of the simplest kind: the tip moves on a straight line at constant speed, with a rotation about at
+    /// most one axis.
     #[must_use]
     pub fn is_arc(&self) -> bool {
         matches!(self.kind, Kind::Arc(_))
@@ -151,8 +153,8 @@ impl Segment {
         }
     }
 
-    /// The same motion with its tip displaced: by the first vector at the start, by the second at the end, and in between by `(1 − σ)`
-    /// times the first and `σ` times the second, where `σ(t)` grows from 0 to 1.
+    /// The same motion with its tip displaced: by the first vector at the start, by the second at the end, and in
+    /// between by `(1 − σ)` times the first and `σ` times the second, where `σ(t)` grows from 0 to 1.
     #[must_use]
     pub fn displaced<P: Into<[f64; 3]>>(mut self, by: [P; 2]) -> Self {
         let by = by.map(|by| Vector3::from(by.into()));
@@ -190,7 +192,8 @@ impl Segment {
         moved
     }
 
-    /// Bernstein coefficients in `t` of `ŵ A(t)`, tool coordinates to space: three for an arc, or one if the axis is constant.
+    /// Bernstein coefficients in `t` of `ŵ A(t)`, tool coordinates to space: three for an arc, or one if the axis is
+    /// constant.
     #[must_use]
     pub fn turns(&self) -> &[Matrix3<f64>] {
         &self.turns
@@ -202,7 +205,8 @@ impl Segment {
         &self.weights
     }
 
-    /// For an [arc](Self::is_arc), `κ k`: the angular velocity times the weight, in space. For other motions, see [`twist`](Self::twist).
+    /// For an [arc](Self::is_arc), `κ k`: the angular velocity times the weight, in space. For other motions, see
+    /// [`twist`](Self::twist).
     #[must_use]
     pub fn spin(&self) -> [f64; 3] {
         match &self.kind {
@@ -250,7 +254,8 @@ impl Segment {
         (0.0..=1.0).contains(&t).then(|| self.at(t))
     }
 
-    /// The fraction of the segment's time that has passed at `t`: for motions at constant angular speed, the fraction of the angle.
+    /// The fraction of the segment's time that has passed at `t`: for motions at constant angular speed, the fraction
+    /// of the angle.
     #[must_use]
     pub fn time(&self, t: f64) -> f64 {
         if self.clock == 0.0 {

@@ -20,8 +20,8 @@ fn restricted<A: Coefficient>(form: &[A], [from, to]: [f64; 2]) -> Vec<A> {
 }
 
 impl Segment {
-    /// The motion between `t = from` and `t = to`, with `0 ≤ from < to ≤ 1`, as a segment of its own. It is the same motion, up to rounding; its
-    /// [time](Self::time) is its parameter.
+    /// The motion between `t = from` and `t = to`, with `0 ≤ from < to ≤ 1`, as a segment of its own. It is the same
+    /// motion, up to rounding; its [time](Self::time) is its parameter.
     ///
     /// ```
     /// use sweepsim_motion::{Pose, Segment};

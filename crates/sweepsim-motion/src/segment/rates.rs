@@ -32,8 +32,8 @@ impl Segment {
         (raised(&rate, 2 * degree), product(weights, weights, |a, b| a * b))
     }
 
-    /// The velocity in the tool's frame: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times a common positive factor.
-    /// The first has a single coefficient if it is constant; otherwise both have the same degree.
+    /// The velocity in the tool's frame: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times a common positive
+    /// factor. The first has a single coefficient if it is constant; otherwise both have the same degree.
     ///
     /// With a surface normal `N` and its moment `M`, `⟨Ω, M⟩ + ⟨Aᵀ b′, N⟩` is the envelope function times that factor.
     #[must_use]

@@ -35,13 +35,15 @@ pub struct SplineMotion {
     ranges: Vec<(f64, f64)>,
 }
 
-/// How often a piece is halved to make its weights positive, or to bring the bound on its deviation below the tolerance.
+/// How often a piece is halved to make its weights positive, or to bring the bound on its deviation below the
+/// tolerance.
 const HALVINGS: usize = 12;
 /// Pieces join if the gap is less than this fraction of the size of the coordinates.
 const JOINED: f64 = 1e-12;
 
 impl SplineMotion {
-    /// The motion with the orientation given by the quaternion `orientation(t) = (w, x, y, z)`, of any nonzero length, and the tip `tip(t)`.
+    /// The motion with the orientation given by the quaternion `orientation(t) = (w, x, y, z)`, of any nonzero length,
+    /// and the tip `tip(t)`.
     ///
     /// A nonzero quaternion always gives a rotation. A linear curve between two unit quaternions is the
     /// SLERP of [`Segment`].
@@ -58,12 +60,13 @@ impl SplineMotion {
         )
     }
 
-    /// The motion whose orientation is the matrix `orientation(t)` (rows one after another, tool coordinates to space) and whose tip is
-    /// `tip(t)`. The matrix must be a rotation: `‖AᵀA − 1‖ ≤ tolerance` everywhere, which is proved by Bernstein coefficients. Its distance from
-    /// a rotation is then at most the tolerance.
+    /// The motion whose orientation is the matrix `orientation(t)` (rows one after another, tool coordinates to space)
+    /// and whose tip is `tip(t)`. The matrix must be a rotation: `‖AᵀA − 1‖ ≤ tolerance` everywhere, which is proved by
+    /// Bernstein coefficients. Its distance from a rotation is then at most the tolerance.
     ///
     /// # Errors
-    /// [`MotionError`]: splines that are not curves, different domains, a matrix that is not a rotation, a reflection, a jump; a tolerance above 1e-6.
+    /// [`MotionError`]: splines that are not curves, different domains, a matrix that is not a rotation, a reflection,
+    /// a jump; a tolerance above 1e-6.
     pub fn from_matrices(
         orientation: &RationalSpline,
         tip: &RationalSpline,

@@ -5,7 +5,8 @@ use crate::segment::{product, spins, wronskian};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_spline::{BSpline, BernsteinMap, RationalSpline, SplinePiece};
 
-/// Highest degree of a matrix and of the tip: the envelope function, with up to four times that degree, must still be evaluated accurately.
+/// Highest degree of a matrix and of the tip: the envelope function, with up to four times that degree, must still be
+/// evaluated accurately.
 const MOST: usize = 8;
 /// Highest degree of a quaternion; its matrix has twice that degree.
 const MOST_QUATERNION: usize = 6;

@@ -1,11 +1,12 @@
 //! The seven-parameter cutter of APT as a profile.
 //!
-//! `d` diameter: twice the radius where bottom line and side line meet; `r` radius of the corner; `e`, `f` position of the corner's centre,
-//! from the axis and above the tip; `a` angle of the bottom line above the horizontal; `b` angle of the side line outwards from the
-//! axis' direction; `h` height. Angles in degrees.
+//! `d` diameter: twice the radius where bottom line and side line meet; `r` radius of the corner; `e`, `f` position of
+//! the corner's centre, from the axis and above the tip; `a` angle of the bottom line above the horizontal; `b` angle
+//! of the side line outwards from the axis' direction; `h` height. Angles in degrees.
 //!
-//! The outline runs from the tip along the bottom line to the corner, around it, and along the side line to the height. If the corner's
-//! circle touches a line, the outline passes between them at that point; if it cuts the line (barrels, lenses), at the farther of the two points.
+//! The outline runs from the tip along the bottom line to the corner, around it, and along the side line to the height.
+//! If the corner's circle touches a line, the outline passes between them at that point; if it cuts the line (barrels,
+//! lenses), at the farther of the two points.
 
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 use thiserror::Error;
@@ -78,7 +79,8 @@ pub enum AptWarning {
     },
 }
 
-/// A circle that misses a line by at most this fraction of the cutter's size counts as touching it, since parameters have few digits.
+/// A circle that misses a line by at most this fraction of the cutter's size counts as touching it, since parameters
+/// have few digits.
 const TOUCHES: f64 = 1e-6;
 
 impl Apt {
@@ -159,7 +161,8 @@ struct Circle {
 }
 
 impl Circle {
-    /// The point where the line touches the circle, or the farther one if it cuts the circle; and the line's distance from the centre.
+    /// The point where the line touches the circle, or the farther one if it cuts the circle; and the line's distance
+    /// from the centre.
     fn farther(&self, line: &Line) -> Option<([f64; 2], f64)> {
         let to = [self.centre[0] - line.from[0], self.centre[1] - line.from[1]];
         let [dx, dy] = line.direction;

@@ -33,8 +33,10 @@ impl Side {
 impl Tool {
     /// A solid with the same points below a height, and fewer above it; `None` if it is not found.
     ///
-    /// A profile is cut where [one straight line of it alone](crate::Profile::below) rises through that height. Of other tools, patches above it are left out, and those that pass through it are cut along a parameter somewhat
-    /// higher. Straight lines from the rim of the hole to one point in the middle close it, if no line along the axis meets them twice.
+    /// A profile is cut where [one straight line of it alone](crate::Profile::below) rises through that height. Of
+    /// other tools, patches above it are left out, and those that pass through it are cut along a parameter somewhat
+    /// higher. Straight lines from the rim of the hole to one point in the middle close it, if no line along the axis
+    /// meets them twice.
     ///
     /// ```
     /// use sweepsim_motion::Tool;
@@ -142,7 +144,8 @@ fn kept(patch: &Patch, side: Side, part: usize) -> Option<Patch> {
     let [lo, hi] = if side.upper { [0.0, at] } else { [at, 1.0] };
     let form = |form: &Bernstein| form.restrict(side.axis, lo, hi).assumed_exact();
     let first = patch.weight().coefficients()[0];
-    // Parts of a constant are that constant, whatever the roundings: normals of polynomial patches have about half the degree.
+    // Parts of a constant are that constant, whatever the roundings: normals of polynomial patches have about half the
+    // degree.
     let weight = if patch.weight().coefficients().iter().all(|w| *w == first) {
         patch.weight().clone()
     } else {
@@ -180,7 +183,8 @@ fn places(patch: &Patch, side: Side) -> [Vector3<f64>; 3] {
     })
 }
 
-/// The lines from a side to a point, as a patch that faces as one does that goes on beyond the side; `None` unless it faces up everywhere.
+/// The lines from a side to a point, as a patch that faces as one does that goes on beyond the side; `None` unless it
+/// faces up everywhere.
 fn lid(points: &[(Vector3<f64>, f64)], side: Side, apex: &Vector3<f64>) -> Option<Patch> {
     // Seen from above, the control polygon turns about the apex in one direction, and so does the side.
     let sense = if (side.axis == 1) == side.upper { 1.0 } else { -1.0 };

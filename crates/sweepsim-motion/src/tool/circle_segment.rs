@@ -1,4 +1,5 @@
-//! Circle-segment cutters: a flank or bottom that is an arc of large radius, tangent to the neighbouring arcs and lines.
+//! Circle-segment cutters: a flank or bottom that is an arc of large radius, tangent to the neighbouring arcs and
+//! lines.
 //!
 //! | form | outline, from the tip |
 //! | --- | --- |
@@ -7,7 +8,8 @@
 //! | barrel | bottom, corner, flank that is widest in the middle, shank |
 //! | lens | bottom that is an arc about a point of the axis, corner, shank |
 //!
-//! Two circles touch from inside if the distance of their centres is the difference of their radii; the point of contact is on the line through both centres.
+//! Two circles touch from inside if the distance of their centres is the difference of their radii; the point of
+//! contact is on the line through both centres.
 
 use super::cutters::check;
 use super::{Barrel, Lens, Oval, Taper, Tool};
@@ -37,7 +39,8 @@ fn made(segments: Vec<ProfileSegment>) -> Result<Tool, ProfileError> {
 }
 
 impl Tool {
-    /// An oval form cutter (tangential barrel): a ball, a flank that is tangent to it, and a shank that is tangent to the flank.
+    /// An oval form cutter (tangential barrel): a ball, a flank that is tangent to it, and a shank that is tangent to
+    /// the flank.
     ///
     /// # Errors
     /// [`ProfileError::Measure`] unless `0 < tip < radius < flank` and `length` reaches above the flank.
@@ -57,10 +60,12 @@ impl Tool {
         })
     }
 
-    /// A taper form cutter (conical barrel): as [`oval`](Self::oval), but the flank still leans outwards where it reaches the shank.
+    /// A taper form cutter (conical barrel): as [`oval`](Self::oval), but the flank still leans outwards where it
+    /// reaches the shank.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank · cos(angle)`, `0 ≤ angle < 90`, and `length` reaches above the flank.
+    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank · cos(angle)`, `0 ≤ angle < 90`, and `length` reaches
+    /// above the flank.
     pub fn taper(measures: Taper) -> Result<Self, ProfileError> {
         let Taper {
             radius,
@@ -92,12 +97,13 @@ impl Tool {
         ])
     }
 
-    /// A barrel cutter: a flat bottom, a flank that is an arc, widest in the middle of its height, and a shank above it with the radius of the flank's
-    /// top. The rim between the bottom and the flank is sharp, or an arc that is tangent to both.
+    /// A barrel cutter: a flat bottom, a flank that is an arc, widest in the middle of its height, and a shank above it
+    /// with the radius of the flank's top. The rim between the bottom and the flank is sharp, or an arc that is tangent
+    /// to both.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless all are positive (`corner` may be 0), the arc is less than half a circle and leaves a bottom, `corner` is below half the height and
-    /// leaves a bottom, and `length` is above `height`.
+    /// [`ProfileError::Measure`] unless all are positive (`corner` may be 0), the arc is less than half a circle and
+    /// leaves a bottom, `corner` is below half the height and leaves a bottom, and `length` is above `height`.
     pub fn barrel(measures: Barrel) -> Result<Self, ProfileError> {
         let Barrel {
             radius,
@@ -142,10 +148,12 @@ impl Tool {
         ])
     }
 
-    /// A lens cutter: a bottom that is part of a ball, and a shank. The rim between them is sharp, or an arc that is tangent to both.
+    /// A lens cutter: a bottom that is part of a ball, and a shank. The rim between them is sharp, or an arc that is
+    /// tangent to both.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < radius < bottom`, `0 ≤ corner < radius`, and `length` reaches above the rim.
+    /// [`ProfileError::Measure`] unless `0 < radius < bottom`, `0 ≤ corner < radius`, and `length` reaches above the
+    /// rim.
     pub fn lens(measures: Lens) -> Result<Self, ProfileError> {
         let Lens {
             radius,

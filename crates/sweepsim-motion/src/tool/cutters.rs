@@ -118,7 +118,8 @@ impl Tool {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no thicker than the flanks at their top.
+    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no
+    /// thicker than the flanks at their top.
     pub fn dovetail(measures: Dovetail) -> Result<Self, ProfileError> {
         let Dovetail {
             radius,

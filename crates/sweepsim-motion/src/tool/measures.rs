@@ -1,4 +1,5 @@
-//! The measures of cutters, by name. Lengths in one unit, angles in degrees; the constructors of [`Tool`](crate::Tool) check them.
+//! The measures of cutters, by name. Lengths in one unit, angles in degrees; the constructors of [`Tool`](crate::Tool)
+//! check them.
 
 /// Measures of [`Tool::lollipop`](crate::Tool::lollipop).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -67,7 +67,8 @@ pub struct BoundingCylinder {
 /// Chords of a curve of the profile: an arc of at most half a turn deviates from its chords by 3e-5 of its radius.
 const RADIUS_CHORDS: usize = 200;
 
-/// A milling tool: a solid with an exact B-spline boundary. The origin is its tip; `+z` points along its axis to the holder.
+/// A milling tool: a solid with an exact B-spline boundary. The origin is its tip; `+z` points along its axis to the
+/// holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
     profile: Option<Profile>,
@@ -113,12 +114,13 @@ impl Tool {
 
     /// A tool of any shape: the solid that `patches` enclose, in any order.
     ///
-    /// Every part of a side of a patch must join part of exactly one other side (of another patch, or of the same one at a seam), within
-    /// `tolerance`. One side may join several, with a different parametrisation. Sides that are points are poles. If the normals differ along a joint,
-    /// there is a sharp edge.
+    /// Every part of a side of a patch must join part of exactly one other side (of another patch, or of the same one
+    /// at a seam), within `tolerance`. One side may join several, with a different parametrisation. Sides that are
+    /// points are poles. If the normals differ along a joint, there is a sharp edge.
     ///
     /// # Errors
-    /// [`ToolError`]: an open boundary, patches that face in different directions, more than two sides along one curve, a boundary that is inside out.
+    /// [`ToolError`]: an open boundary, patches that face in different directions, more than two sides along one curve,
+    /// a boundary that is inside out.
     ///
     /// ```
     /// use sweepsim_motion::{Patch, Tool};
@@ -161,14 +163,15 @@ impl Tool {
         self.reach
     }
 
-    /// A cylinder about the axis that holds the tool. For lines and arcs of a profile it is the smallest, up to the corners of the arcs' control polygons.
+    /// A cylinder about the axis that holds the tool. For lines and arcs of a profile it is the smallest, up to the
+    /// corners of the arcs' control polygons.
     #[must_use]
     pub fn bounding_cylinder(&self) -> BoundingCylinder {
         self.cylinder
     }
 
-    /// The solid of all points no farther than `distance` from this one ([`Profile::offset`]). Of tools without a profile, from the cylinder that holds them,
-    /// which is larger.
+    /// The solid of all points no farther than `distance` from this one ([`Profile::offset`]). Of tools without a
+    /// profile, from the cylinder that holds them, which is larger.
     ///
     /// # Errors
     /// [`ProfileError`] as of [`Profile::offset`].
@@ -189,8 +192,8 @@ impl Tool {
         Ok(Self::from_profile(profile))
     }
 
-    /// The largest radius of the part of the tool below `height`, to within 1e-4 of the tool's own: half the width of a groove of this depth. 0 below the tip.
-    /// For tools of patches, the largest radius of the whole tool.
+    /// The largest radius of the part of the tool below `height`, to within 1e-4 of the tool's own: half the width of a
+    /// groove of this depth. 0 below the tip. For tools of patches, the largest radius of the whole tool.
     ///
     /// ```
     /// use sweepsim_motion::{Profile, ProfileSegment, Tool};

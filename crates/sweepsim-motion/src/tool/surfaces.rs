@@ -20,8 +20,8 @@ pub(super) fn patches(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolErr
         let pieces = spline
             .pieces()
             .map_err(|source| ToolError::Spline { surface, source })?;
-        // Pieces of a constant are that constant, whatever the roundings of knot insertion: the surface is polynomial, and the normals of
-        // its patches have about half the degree.
+        // Pieces of a constant are that constant, whatever the roundings of knot insertion: the surface is polynomial,
+        // and the normals of its patches have about half the degree.
         let mut weights = spline.control_points().map(|(_, weight)| weight);
         let first = weights.next();
         let constant = first.filter(|first| weights.all(|weight| weight == *first));

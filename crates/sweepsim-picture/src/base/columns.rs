@@ -1,9 +1,11 @@
-//! The columns of a row in which a triangle may be: of a long and narrow one that lies aslant, few of those between its ends.
+//! The columns of a row in which a triangle may be: of a long and narrow one that lies aslant, few of those between its
+//! ends.
 
 /// Up to so many columns are counted: divisions would take longer.
 const NARROW: i64 = 12;
 
-/// Where all three values are at least 0, among `count` columns: `values` in the first of them, which grow by `grow` from each to the next.
+/// Where all three values are at least 0, among `count` columns: `values` in the first of them, which grow by `grow`
+/// from each to the next.
 ///
 /// Returns the first column and the one after the last.
 pub(crate) fn inside(count: i64, values: [i64; 3], grow: [i64; 3]) -> [i64; 2] {

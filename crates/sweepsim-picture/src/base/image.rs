@@ -38,7 +38,8 @@ impl Image {
     /// An image from its pixels, row by row from the top left.
     ///
     /// # Errors
-    /// [`ImageError`] if a side is empty or longer than [`Image::MAX_SIDE`], or `rgb` does not have three bytes per pixel.
+    /// [`ImageError`] if a side is empty or longer than [`Image::MAX_SIDE`], or `rgb` does not have three bytes per
+    /// pixel.
     pub fn new(size: [usize; 2], rgb: Vec<u8>) -> Result<Self, ImageError> {
         let [width, height] = size;
         if !size.iter().all(|side| (1..=Self::MAX_SIDE).contains(side)) {
@@ -75,7 +76,8 @@ impl Image {
         &mut self.rgb
     }
 
-    /// The colour of the pixel in a column (from the left) and a row (from the top), both from 0; `None` outside the image.
+    /// The colour of the pixel in a column (from the left) and a row (from the top), both from 0; `None` outside the
+    /// image.
     #[must_use]
     pub fn pixel(&self, column: usize, row: usize) -> Option<[u8; 3]> {
         let [width, height] = self.size;

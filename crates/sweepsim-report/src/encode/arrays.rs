@@ -33,7 +33,8 @@ pub(crate) struct Arrays {
 /// The level at which more effort gains little.
 const LEVEL: u8 = 6;
 
-/// Each number less the one before it, modulo 2 to the number of its bits; then all low bytes, all second bytes, and so on.
+/// Each number less the one before it, modulo 2 to the number of its bits; then all low bytes, all second bytes, and so
+/// on.
 fn planes<const N: usize>(numbers: impl ExactSizeIterator<Item = u32>) -> Vec<u8> {
     let count = numbers.len();
     let mut planes = vec![0; N * count];

@@ -1,4 +1,5 @@
-//! Pages as their readers meet them: decoded by code that shares nothing with the encoder, and searched for what must not be in them.
+//! Pages as their readers meet them: decoded by code that shares nothing with the encoder, and searched for what must
+//! not be in them.
 
 mod decoder;
 mod page;

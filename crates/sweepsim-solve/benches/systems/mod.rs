@@ -94,8 +94,8 @@ pub fn cyclohexane() -> Named {
     }
 }
 
-/// Where a dexel line meets the envelope of a sphere along a cubic path with a turning frame (Eq. 6), in the degrees that a
-/// general surface has: (4,4,8), (2,2,3), (2,2,5).
+/// Where a dexel line meets the envelope of a sphere along a cubic path with a turning frame (Eq. 6), in the degrees
+/// that a general surface has: (4,4,8), (2,2,3), (2,2,5).
 pub fn sphere_sweep() -> Named {
     Named {
         name: "sphere_sweep_eq6",
@@ -150,7 +150,8 @@ pub fn sphere_section() -> Named {
     }
 }
 
-/// Where a dexel line meets what a circular edge sweeps along the same motion (Eq. 7), in the degrees (2, 3) and (2, 5).
+/// Where a dexel line meets what a circular edge sweeps along the same motion (Eq. 7), in the degrees (2, 3) and (2,
+/// 5).
 pub fn edge_sweep() -> Named {
     let n = 2;
     let one = Bernstein::constant(n, 1.0);
@@ -176,8 +177,8 @@ pub fn edge_sweep() -> Named {
     }
 }
 
-/// Combinations of `(xᵢ − 3/10)(xᵢ − 4/5) + Σ dᵢⱼₖ xⱼ xₖ`, with factors of up to 3/100 for all products of two variables, by a random matrix: no equation shows where a root
-/// is.
+/// Combinations of `(xᵢ − 3/10)(xᵢ − 4/5) + Σ dᵢⱼₖ xⱼ xₖ`, with factors of up to 3/100 for all products of two
+/// variables, by a random matrix: no equation shows where a root is.
 pub fn quadrics(n: usize, name: &'static str) -> Named {
     let mut state = 17u64;
     let mut random = || {

@@ -45,8 +45,8 @@ impl Bernstein {
 
     /// The product, of degree the sum of the degrees.
     ///
-    /// Cost: the product of the two numbers of coefficients. Error: `A ε_b + B ε_a + ε_a ε_b + γ_N A B`, `A` and `B` the
-    /// [magnitudes](Self::magnitude), `N` a little more than the length of the longest sum.
+    /// Cost: the product of the two numbers of coefficients. Error: `A ε_b + B ε_a + ε_a ε_b + γ_N A B`, `A` and `B`
+    /// the [magnitudes](Self::magnitude), `N` a little more than the length of the longest sum.
     #[must_use]
     pub fn mul(&self, other: &Self) -> Self {
         let degrees: Degrees = common(self, other, usize::saturating_add);

@@ -1,7 +1,7 @@
 //! Values and gradients at many points: several points side by side in the lanes of a vector share each coefficient.
 //!
-//! The first (fastest) variable is contracted first: that leaves the least for the others. Every stage keeps, beside the
-//! value, one array for each variable already contracted by its slope.
+//! The first (fastest) variable is contracted first: that leaves the least for the others. Every stage keeps, beside
+//! the value, one array for each variable already contracted by its slope.
 
 use super::Bernstein;
 use smallvec::SmallVec;
@@ -19,8 +19,8 @@ const ZERO: Lane = [0.0; LANES];
 impl Bernstein {
     /// The values at many points: `points` has `variables()` coordinates per point, `values` room for one number each.
     ///
-    /// Evaluates as many points as both slices have room for, and returns their number. For a form in no variables, there is one point for
-    /// each place in `values`.
+    /// Evaluates as many points as both slices have room for, and returns their number. For a form in no variables,
+    /// there is one point for each place in `values`.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

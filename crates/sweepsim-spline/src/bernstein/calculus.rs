@@ -72,7 +72,8 @@ impl Bernstein {
             }
             to.iter_mut().for_each(|c| *c /= divisor);
         }
-        // A sum of at most `len` terms, each within the magnitude, divided by `len`: a mean, so the error is not scaled up.
+        // A sum of at most `len` terms, each within the magnitude, divided by `len`: a mean, so the error is not scaled
+        // up.
         let size = form.magnitude();
         let error = up(form.error + gamma(view.len + 1) * size + if size > 0.0 { UNDERFLOW } else { 0.0 });
         Self::computed(degrees, coefficients, error)

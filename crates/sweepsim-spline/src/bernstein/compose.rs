@@ -105,7 +105,8 @@ impl Bernstein {
         self.compose(&inner)
     }
 
-    /// The form with variable `axis` replaced by `g`, a form in the *other* variables (in their order): one variable fewer.
+    /// The form with variable `axis` replaced by `g`, a form in the *other* variables (in their order): one variable
+    /// fewer.
     ///
     /// Cheaper and more accurate than [`compose`](Self::compose) with identities for the others.
     ///

@@ -1,8 +1,8 @@
 //! Values, gradients, and bounds on their errors.
 //!
-//! The Bernstein basis of each variable by its triangular recurrence (only sums of products of numbers of one sign on `[0,1]`, so each basis
-//! value has a small *relative* error), then one contraction a variable, the last (slowest) first, so that the long
-//! sums run over contiguous rows.
+//! The Bernstein basis of each variable by its triangular recurrence (only sums of products of numbers of one sign on
+//! `[0,1]`, so each basis value has a small *relative* error), then one contraction a variable, the last (slowest)
+//! first, so that the long sums run over contiguous rows.
 
 use super::{Bernstein, BernsteinError};
 use crate::jets::{self, Buffer, Derivatives, contract, contract_rows};
@@ -58,8 +58,8 @@ impl Bernstein {
     ///
     /// # Errors
     ///
-    /// [`Coordinates`](BernsteinError::Coordinates) unless there is one coordinate for each variable; [`Outside`](BernsteinError::Outside) for one that
-    /// is outside `[0, 1]` or NaN.
+    /// [`Coordinates`](BernsteinError::Coordinates) unless there is one coordinate for each variable;
+    /// [`Outside`](BernsteinError::Outside) for one that is outside `[0, 1]` or NaN.
     pub fn try_evaluate(&self, point: &[f64]) -> Result<f64, BernsteinError> {
         check_point(self.variables(), point)?;
         Ok(self.evaluate(point))
@@ -110,12 +110,14 @@ impl Bernstein {
     /// Bounds on the errors of a gradient at `point`, one per variable as far as `errors` has room.
     ///
     /// The slope by a variable of degree `d` is a sum over differences of basis functions, whose absolute values sum to
-    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few more roundings. Where
-    /// the coefficients are large and their differences small, taking the [`derivative`](Self::derivative) first is more accurate.
+    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few more roundings. Where the
+    /// coefficients are large and their differences small, taking the [`derivative`](Self::derivative) first is more
+    /// accurate.
     pub fn gradient_errors(&self, point: &[f64], errors: &mut [f64]) {
         let error = self.evaluation_error(point);
         for (bound, &degree) in errors.iter_mut().zip(&self.degrees) {
-            // `evaluation_error` counts at least 6 roundings where a degree is not 0; twice that is room for three more.
+            // `evaluation_error` counts at least 6 roundings where a degree is not 0; twice that is room for three
+            // more.
             *bound = if degree == 0 {
                 0.0
             } else {

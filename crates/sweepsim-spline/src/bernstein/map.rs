@@ -7,8 +7,8 @@ use crate::jets::Derivatives;
 
 /// A polynomial map `[0,1]ⁿ → Rᵐ`: `m` Bernstein forms.
 ///
-/// Components may differ in their degrees, which are elevated only when needed. A component with fewer variables does not
-/// depend on the others, as for [`Bernstein`] itself; nothing panics.
+/// Components may differ in their degrees, which are elevated only when needed. A component with fewer variables does
+/// not depend on the others, as for [`Bernstein`] itself; nothing panics.
 ///
 /// ```
 /// use sweepsim_spline::{Bernstein, BernsteinMap};
@@ -233,8 +233,8 @@ impl BernsteinMap {
     ///
     /// # Errors
     ///
-    /// [`FormCount`](BernsteinError::FormCount) unless each row has as many components as there are rows, or for more than
-    /// eight rows.
+    /// [`FormCount`](BernsteinError::FormCount) unless each row has as many components as there are rows, or for more
+    /// than eight rows.
     pub fn determinant(rows: &[Self]) -> Result<Bernstein, BernsteinError> {
         let n = rows.len();
         if n > 8 {

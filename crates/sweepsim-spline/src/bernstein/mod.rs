@@ -35,16 +35,18 @@ pub const MAX_DEGREE: usize = 1000;
 /// A scalar polynomial in `n` variables on `[0,1]ⁿ`, given by its coefficients in the tensor-product Bernstein basis.
 ///
 /// With degrees `d₀, …, dₙ₋₁` the form is `Σ c[i₀,…,iₙ₋₁] · B(d₀,i₀)(x₀) ⋯ B(dₙ₋₁,iₙ₋₁)(xₙ₋₁)`,
-/// `B(d,i)(x) = C(d,i) xⁱ (1−x)ᵈ⁻ⁱ`. The first variable runs fastest: `c[i₀,i₁,i₂]` is at `i₀ + (d₀+1)(i₁ + (d₁+1) i₂)`.
+/// `B(d,i)(x) = C(d,i) xⁱ (1−x)ᵈ⁻ⁱ`. The first variable runs fastest: `c[i₀,i₁,i₂]` is at
+/// `i₀ + (d₀+1)(i₁ + (d₁+1) i₂)`.
 ///
 /// # Guarantees
 ///
-/// - **Every operation is total.** The form is constant in variables beyond [`variables`](Self::variables): two forms with different numbers of variables add and multiply as functions of the larger number, the
-///   derivative by such a variable is 0, splitting by it gives two copies. Nothing panics.
-/// - **Every operation bounds its rounding error.** [`error`](Self::error) bounds, for every coefficient, the distance from
-///   what exact arithmetic would have given, starting from the coefficients given to [`new`](Self::new) taken as exact. So
-///   [`enclosure`](Self::enclosure) is rigorous. Overflow, or a result above [`MAX_COEFFICIENTS`], gives a form with
-///   an infinite error, whose enclosure is `(−∞, ∞)`.
+/// - **Every operation is total.** The form is constant in variables beyond [`variables`](Self::variables): two forms
+///   with different numbers of variables add and multiply as functions of the larger number, the derivative by such a
+///   variable is 0, splitting by it gives two copies. Nothing panics.
+/// - **Every operation bounds its rounding error.** [`error`](Self::error) bounds, for every coefficient, the distance
+///   from what exact arithmetic would have given, starting from the coefficients given to [`new`](Self::new) taken as
+///   exact. So [`enclosure`](Self::enclosure) is rigorous. Overflow, or a result above [`MAX_COEFFICIENTS`], gives a
+///   form with an infinite error, whose enclosure is `(−∞, ∞)`.
 ///
 /// # Example
 ///
@@ -248,7 +250,8 @@ impl Bernstein {
         range(&self.coefficients)
     }
 
-    /// A range that holds every value of the exact form on `[0,1]ⁿ`: [`range`](Self::range) widened by [`error`](Self::error).
+    /// A range that holds every value of the exact form on `[0,1]ⁿ`: [`range`](Self::range) widened by
+    /// [`error`](Self::error).
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

@@ -65,8 +65,9 @@ impl RationalBernstein {
 
     /// An arc of the unit circle, from `start` by `sweep` radians, as a quadratic: `(cos α, sin α) = (x, y) / w`.
     ///
-    /// Coefficients (`m = start + sweep/2`): `w = (1, cos sweep/2, 1)`, `x = (cos start, cos m, cos (start + sweep))`, `y` with sines.
-    /// The smallest weight is `cos sweep/2`: keep the sweep at 90° or below for weights of at least 0.7.
+    /// Coefficients (`m = start + sweep/2`): `w = (1, cos sweep/2, 1)`, `x = (cos start, cos m, cos (start + sweep))`,
+    /// `y` with sines. The smallest weight is `cos sweep/2`: keep the sweep at 90° or below for weights of at least
+    /// 0.7.
     ///
     /// ```
     /// use sweepsim_spline::RationalBernstein;

@@ -7,11 +7,11 @@ use crate::rounding::{UNDERFLOW, gamma, magnitude, up};
 impl Bernstein {
     /// The same function with the degree in `axis` lower by one, or `None` if it certainly is not of that degree.
     ///
-    /// Solves `b_k = (k/d) c_{k−1} + (1 − k/d) c_k` for `c`, the lower half from below and the upper half from above, so
-    /// that an error grows only linearly with `d`; then elevates `c` again and compares with `b`. They differ by no more
-    /// than the error bounds if the exact form is of the lower degree: then `c` with its bound is that form.
-    /// Conversely, an error bound of 0 or of rounding size makes acceptance mean *of lower degree up to
-    /// rounding*, and the result's [`error`](Self::error) covers what was left out.
+    /// Solves `b_k = (k/d) c_{k−1} + (1 − k/d) c_k` for `c`, the lower half from below and the upper half from above,
+    /// so that an error grows only linearly with `d`; then elevates `c` again and compares with `b`. They differ by no
+    /// more than the error bounds if the exact form is of the lower degree: then `c` with its bound is that form.
+    /// Conversely, an error bound of 0 or of rounding size makes acceptance mean *of lower degree up to rounding*, and
+    /// the result's [`error`](Self::error) covers what was left out.
     ///
     /// Also `None` if the degree is already 0, or the error is infinite.
     ///

@@ -7,8 +7,8 @@ use crate::rounding::{UNDERFLOW, UNIT, up};
 impl Bernstein {
     /// The form on `x_axis ≤ at` and on `x_axis ≥ at`, each again on `[0,1]ⁿ`.
     ///
-    /// Error: one rounding for each degree in `axis` if `at` is 1/2, three otherwise; `at` outside `[0,1]` extrapolates, and the bound
-    /// grows with `(|1−at| + |at|)` to the degree.
+    /// Error: one rounding for each degree in `axis` if `at` is 1/2, three otherwise; `at` outside `[0,1]`
+    /// extrapolates, and the bound grows with `(|1−at| + |at|)` to the degree.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -171,8 +171,8 @@ impl Bernstein {
 
     /// The error after `degree` steps `s a + t b`, each with this many relative roundings in its terms.
     ///
-    /// A step takes magnitude `m` and error `e` to `G m (1 + r u)` and `G e + r u G m`, `G = |s| + |t|` (1 inside, up to
-    /// rounding); so after `d` steps the error is at most `Gᵈ (e + ((1 + r u)ᵈ − 1) m)`.
+    /// A step takes magnitude `m` and error `e` to `G m (1 + r u)` and `G e + r u G m`, `G = |s| + |t|` (1 inside, up
+    /// to rounding); so after `d` steps the error is at most `Gᵈ (e + ((1 + r u)ᵈ − 1) m)`.
     fn casteljau_error(&self, degree: usize, s: f64, t: f64, roundings: f64) -> f64 {
         if (s == 1.0 && t == 0.0) || (s == 0.0 && t == 1.0) {
             return self.error;

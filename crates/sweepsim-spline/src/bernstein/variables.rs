@@ -18,8 +18,8 @@ impl Bernstein {
     ///
     /// # Errors
     ///
-    /// [`Axes`](BernsteinError::Axes) if `axes` has not one entry for each variable, all different and below `variables`;
-    /// [`TooLarge`](BernsteinError::TooLarge) above [`MAX_VARIABLES`].
+    /// [`Axes`](BernsteinError::Axes) if `axes` has not one entry for each variable, all different and below
+    /// `variables`; [`TooLarge`](BernsteinError::TooLarge) above [`MAX_VARIABLES`].
     pub fn extend(&self, variables: usize, axes: &[usize]) -> Result<Self, BernsteinError> {
         if variables > MAX_VARIABLES {
             return Err(BernsteinError::TooLarge);

@@ -1,16 +1,16 @@
 //! Cones around the directions of a vector-valued form: of gradients, normals, tangents.
 //!
-//! If every coefficient vector lies in a convex cone, so does every value, a sum of them with positive weights. The cone
-//! `{v : |v − (v·a)a/|a|²| |a| ≤ τ (v·a)}` is convex for any `τ`, so `τ` is the largest over the coefficients, each with its
-//! ball of rounding error.
+//! If every coefficient vector lies in a convex cone, so does every value, a sum of them with positive weights. The
+//! cone `{v : |v − (v·a)a/|a|²| |a| ≤ τ (v·a)}` is convex for any `τ`, so `τ` is the largest over the coefficients,
+//! each with its ball of rounding error.
 
 use crate::bernstein::BernsteinMap;
 use crate::bernstein::{Bernstein, BernsteinError};
 use crate::rounding::{UNDERFLOW, gamma, up};
 use crate::spline::{BSpline, SplineError};
 
-/// A circular cone of directions: all vectors `v` whose angle with [`axis`](Self::axis) is at most [`angle`](Self::angle),
-/// which is less than a right angle. The zero vector belongs to it only as its tip.
+/// A circular cone of directions: all vectors `v` whose angle with [`axis`](Self::axis) is at most
+/// [`angle`](Self::angle), which is less than a right angle. The zero vector belongs to it only as its tip.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cone {
@@ -110,7 +110,8 @@ fn norm(vector: &[f64]) -> f64 {
 }
 
 impl BernsteinMap {
-    /// A cone that contains every value on `[0,1]ⁿ`; `None` if the coefficients lie in no cone narrower than a half-space.
+    /// A cone that contains every value on `[0,1]ⁿ`; `None` if the coefficients lie in no cone narrower than a
+    /// half-space.
     ///
     /// If there is one, the map is nowhere 0.
     ///
@@ -154,7 +155,8 @@ impl BernsteinMap {
 impl Bernstein {
     /// A cone that holds every gradient on `[0,1]ⁿ`; `None` if there is none narrower than a half space.
     ///
-    /// If there is one, the form is monotone along its axis and every level set in `[0,1]ⁿ` is a graph over a hyperplane.
+    /// If there is one, the form is monotone along its axis and every level set in `[0,1]ⁿ` is a graph over a
+    /// hyperplane.
     pub fn gradient_cone(&self) -> Option<Cone> {
         BernsteinMap::new(self.gradient()).cone()
     }

@@ -2,7 +2,8 @@
 
 use crate::bernstein::Bernstein;
 
-/// A form between two parallel planes: `ℓ(x) + lower ≤ f(x) ≤ ℓ(x) + upper` on `[0,1]ⁿ`, `ℓ(x) = constant + slopes · x`.
+/// A form between two parallel planes: `ℓ(x) + lower ≤ f(x) ≤ ℓ(x) + upper` on `[0,1]ⁿ`,
+/// `ℓ(x) = constant + slopes · x`.
 ///
 /// The width `upper − lower` shrinks with the square of the size of the box; that of an
 /// [`enclosure`](Bernstein::enclosure) only with the size.

@@ -79,8 +79,8 @@ impl Bernstein {
 
     /// An interval of `x_axis` outside which the form has no zero on `[0,1]ⁿ`; `None` if it has none at all.
     ///
-    /// The convex hull of the points `(i/d, c)`, `c` running over the coefficients with index `i` in that variable, cut with
-    /// the axis (Sherbrooke and Patrikalakis: projected polyhedra); rounded outwards.
+    /// The convex hull of the points `(i/d, c)`, `c` running over the coefficients with index `i` in that variable, cut
+    /// with the axis (Sherbrooke and Patrikalakis: projected polyhedra); rounded outwards.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

@@ -1,7 +1,8 @@
 //! Interpolation and least squares, axis by axis.
 //!
 //! On a grid of sites, the tensor-product problem is one small linear system per variable, with many right-hand sides.
-//! The systems are solved as dense ones (pivoted LU, Householder QR), at a cost cubic in the number of coefficients per variable.
+//! The systems are solved as dense ones (pivoted LU, Householder QR), at a cost cubic in the number of coefficients per
+//! variable.
 
 use crate::kernel::along;
 use crate::knots::KnotVector;
@@ -20,8 +21,8 @@ pub struct Fit {
 }
 
 impl BSpline {
-    /// The spline on `knots` that takes given values on a grid of sites: `sites[i]` are the parameters in variable `i`, as many
-    /// as basis functions; `values` has `dimension` numbers for each grid point, the first variable fastest.
+    /// The spline on `knots` that takes given values on a grid of sites: `sites[i]` are the parameters in variable `i`,
+    /// as many as basis functions; `values` has `dimension` numbers for each grid point, the first variable fastest.
     ///
     /// ```
     /// use sweepsim_spline::{BSpline, KnotVector};
@@ -36,9 +37,9 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count), [`CoefficientCount`](SplineError::CoefficientCount), [`NotFinite`](SplineError::NotFinite);
-    /// [`Singular`](SplineError::Singular) if a variable's sites do not determine the spline: some basis function has none
-    /// in the interior of its support (Schoenberg and Whitney).
+    /// [`Count`](SplineError::Count), [`CoefficientCount`](SplineError::CoefficientCount),
+    /// [`NotFinite`](SplineError::NotFinite); [`Singular`](SplineError::Singular) if a variable's sites do not
+    /// determine the spline: some basis function has none in the interior of its support (Schoenberg and Whitney).
     pub fn interpolate(
         knots: Vec<KnotVector>,
         sites: &[Vec<f64>],
@@ -163,8 +164,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count) for no more points than the degree; [`Dimension`](SplineError::Dimension) if they have
-    /// different numbers of coordinates; [`Degenerate`](SplineError::Degenerate) if neighbours coincide;
+    /// [`Count`](SplineError::Count) for no more points than the degree; [`Dimension`](SplineError::Dimension) if they
+    /// have different numbers of coordinates; [`Degenerate`](SplineError::Degenerate) if neighbours coincide;
     /// [`NotFinite`](SplineError::NotFinite), [`Singular`](SplineError::Singular).
     pub fn curve_through<P: AsRef<[f64]>>(points: &[P], degree: usize) -> Result<Fit, SplineError> {
         if points.len() <= degree || points.len() < 2 || degree == 0 {

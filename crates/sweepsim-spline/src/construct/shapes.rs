@@ -29,7 +29,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Dimension`](SplineError::Dimension) if the points have different numbers of coordinates; as [`new`](Self::new).
+    /// [`Dimension`](SplineError::Dimension) if the points have different numbers of coordinates; as
+    /// [`new`](Self::new).
     pub fn line(start: &[f64], end: &[f64]) -> Result<Self, SplineError> {
         Self::from_points(vec![unit_interval(1)?], &[start, end])
     }
@@ -157,7 +158,8 @@ fn arc_coefficients(start: f64, sweep: f64) -> Result<(KnotVector, Vec<[f64; 3]>
 const ARC_ERROR: f64 = 64.0 * UNIT;
 
 impl RationalSpline {
-    /// The arc `center + cos α · a + sin α · b`, `α` from `start` by `sweep` radians (at most a whole turn, either way).
+    /// The arc `center + cos α · a + sin α · b`, `α` from `start` by `sweep` radians (at most a whole turn, either
+    /// way).
     ///
     /// Of degree 2, in pieces of at most a quarter turn, one unit of the parameter each; with `a ⊥ b` of one length a
     /// circular arc, otherwise an elliptical one. The angles are rounded; the error bound covers the sines and cosines.
@@ -174,7 +176,8 @@ impl RationalSpline {
     /// # Errors
     ///
     /// [`Degenerate`](SplineError::Degenerate) for angles that are not finite, 0, or more than a turn;
-    /// [`Dimension`](SplineError::Dimension) if `a` or `b` does not have as many coordinates as the center; as [`BSpline::new`].
+    /// [`Dimension`](SplineError::Dimension) if `a` or `b` does not have as many coordinates as the center; as
+    /// [`BSpline::new`].
     pub fn arc(center: &[f64], a: &[f64], b: &[f64], start: f64, sweep: f64) -> Result<Self, SplineError> {
         for other in [a, b] {
             if other.len() != center.len() {
@@ -199,7 +202,8 @@ impl RationalSpline {
     ///
     /// # Errors
     ///
-    /// [`Degenerate`](SplineError::Degenerate) unless the radius is positive and finite; [`NotFinite`](SplineError::NotFinite).
+    /// [`Degenerate`](SplineError::Degenerate) unless the radius is positive and finite;
+    /// [`NotFinite`](SplineError::NotFinite).
     pub fn circle(center: [f64; 2], radius: f64) -> Result<Self, SplineError> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(SplineError::Degenerate { what: "radius" });
@@ -224,8 +228,9 @@ impl RationalSpline {
     ///
     /// # Errors
     ///
-    /// [`Dimension`](SplineError::Dimension) unless there are three coordinates; [`Degenerate`](SplineError::Degenerate) for a
-    /// direction without length or as for [`arc`](Self::arc); [`Size`](SplineError::Size).
+    /// [`Dimension`](SplineError::Dimension) unless there are three coordinates;
+    /// [`Degenerate`](SplineError::Degenerate) for a direction without length or as for [`arc`](Self::arc);
+    /// [`Size`](SplineError::Size).
     pub fn revolve(&self, origin: [f64; 3], direction: [f64; 3], sweep: f64) -> Result<Self, SplineError> {
         if self.dimension() != 3 {
             return Err(SplineError::Dimension {

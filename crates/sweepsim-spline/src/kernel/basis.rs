@@ -1,8 +1,10 @@
 //! The Bernstein polynomials, their derivatives, and sums of rows with them.
 
-/// The Bernstein polynomials of `degree` at `x` (which may lie outside `[0, 1]`), into the first `degree + 1` of `values`.
+/// The Bernstein polynomials of `degree` at `x` (which may lie outside `[0, 1]`), into the first `degree + 1` of
+/// `values`.
 ///
-/// The triangular recurrence: on `[0, 1]` only numbers of one sign are multiplied and added, so that each value has a small relative error.
+/// The triangular recurrence: on `[0, 1]` only numbers of one sign are multiplied and added, so that each value has a
+/// small relative error.
 ///
 /// # Panics
 /// If `values` is shorter than that.

@@ -8,9 +8,11 @@ pub trait Coefficient: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
 
 impl<A: Copy + Add<Output = A> + Mul<f64, Output = A>> Coefficient for A {}
 
-/// The coefficients of the product of two forms, of degree the sum of their degrees; `times` multiplies two coefficients.
+/// The coefficients of the product of two forms, of degree the sum of their degrees; `times` multiplies two
+/// coefficients.
 ///
-/// Each is a sum in which every product of coefficients has a positive factor, at most 1. None if a form has no coefficients.
+/// Each is a sum in which every product of coefficients has a positive factor, at most 1. None if a form has no
+/// coefficients.
 ///
 /// ```
 /// use sweepsim_spline::kernel::product;
@@ -41,8 +43,9 @@ pub fn raised<A: Coefficient>(a: &[A], by: usize) -> impl Iterator<Item = A> {
     })
 }
 
-/// The antisymmetric part of a Wronskian: `Σ_{i<j} (Bᵢ Bⱼ′ − Bᵢ′ Bⱼ) f(i, j)` for the Bernstein polynomials of `degree ≥ 1`, of degree
-/// `2 degree − 2`; nothing for degree 0. Because `Bᵢ Bⱼ′ − Bᵢ′ Bⱼ = Bᵢ Bⱼ (j − i) / (t (1 − t))`, all factors are positive.
+/// The antisymmetric part of a Wronskian: `Σ_{i<j} (Bᵢ Bⱼ′ − Bᵢ′ Bⱼ) f(i, j)` for the Bernstein polynomials of
+/// `degree ≥ 1`, of degree `2 degree − 2`; nothing for degree 0. Because
+/// `Bᵢ Bⱼ′ − Bᵢ′ Bⱼ = Bᵢ Bⱼ (j − i) / (t (1 − t))`, all factors are positive.
 pub fn wronskian<A>(degree: usize, f: impl Fn(usize, usize) -> A) -> impl Iterator<Item = A>
 where
     A: Add<Output = A> + Mul<f64, Output = A>,
@@ -76,7 +79,8 @@ pub fn evaluate<A: Coefficient>(a: &mut [A], t: f64) -> Option<A> {
     a.first().copied()
 }
 
-/// Splits a form at `t`, with `s = 1 − t`: its part above stays, the part below goes to `lower`, as far as that is long.
+/// Splits a form at `t`, with `s = 1 − t`: its part above stays, the part below goes to `lower`, as far as that is
+/// long.
 pub fn split_line<A: Coefficient>(upper: &mut [A], lower: &mut [A], s: f64, t: f64) {
     let count = upper.len();
     for (step, below) in lower.iter_mut().enumerate().take(count) {

@@ -5,11 +5,12 @@
 //!
 //! # Tensors
 //!
-//! Coefficients of a form in several variables are stored in one slice, the first variable fastest. Along one variable such a slice is
-//! `outer × (degree + 1) × inner` numbers, `inner` of them contiguous: `inner` is 1 for the first variable, and the number of coefficients
-//! of all variables before it for the others. An operation along a variable combines whole rows of `inner` numbers, which compilers turn into
-//! vector instructions. Several tensors of the same degrees, one after another, count as one; a vector-valued form whose components run fastest has
-//! them in `inner`. Numbers beyond the last whole block are left alone.
+//! Coefficients of a form in several variables are stored in one slice, the first variable fastest. Along one variable
+//! such a slice is `outer × (degree + 1) × inner` numbers, `inner` of them contiguous: `inner` is 1 for the first
+//! variable, and the number of coefficients of all variables before it for the others. An operation along a variable
+//! combines whole rows of `inner` numbers, which compilers turn into vector instructions. Several tensors of the same
+//! degrees, one after another, count as one; a vector-valued form whose components run fastest has them in `inner`.
+//! Numbers beyond the last whole block are left alone.
 //!
 //! ```
 //! use sweepsim_spline::kernel;
@@ -22,8 +23,9 @@
 //!
 //! # Lines
 //!
-//! Forms in one variable may have coefficients of any type that adds and is multiplied by numbers: [`product`], [`raised`],
-//! [`wronskian`] and [`derivative`] iterate over the coefficients of their result, so that the caller decides where to store them.
+//! Forms in one variable may have coefficients of any type that adds and is multiplied by numbers: [`product`],
+//! [`raised`], [`wronskian`] and [`derivative`] iterate over the coefficients of their result, so that the caller
+//! decides where to store them.
 
 mod along;
 mod basis;

@@ -35,7 +35,8 @@ fn scale_by_binomials<const INVERSE: bool>(coefficients: &mut [f64], degrees: &[
     }
 }
 
-/// The product of two tensors of Bernstein coefficients, into `product`, which holds zeros and has the sums of the degrees.
+/// The product of two tensors of Bernstein coefficients, into `product`, which holds zeros and has the sums of the
+/// degrees.
 pub(crate) fn multiply(
     (degrees_a, a): (&[usize], &[f64]),
     (degrees_b, b): (&[usize], &[f64]),
@@ -79,7 +80,8 @@ fn convolve(
     }
 }
 
-/// Where in a tensor of `degrees` each entry of a form of degrees `own` goes that has index 0 in the first `skip` variables.
+/// Where in a tensor of `degrees` each entry of a form of degrees `own` goes that has index 0 in the first `skip`
+/// variables.
 fn offsets(own: &[usize], degrees: &[usize], skip: usize) -> SmallVec<[usize; 64]> {
     let mut offsets = SmallVec::from_slice(&[0]);
     let mut stride = 1;

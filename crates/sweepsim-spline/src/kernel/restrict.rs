@@ -5,11 +5,11 @@ use super::{keep_lower, keep_upper};
 /// One more than the highest degree with tables of weights.
 const MOST: usize = 32;
 
-/// The coefficients of forms of these degrees, one after the other in `source`, over the rectangle from `lower` to `upper` (which may reach beyond
-/// `[0, 1]²`), again on `[0, 1]²`, into `out`.
+/// The coefficients of forms of these degrees, one after the other in `source`, over the rectangle from `lower` to
+/// `upper` (which may reach beyond `[0, 1]²`), again on `[0, 1]²`, into `out`.
 ///
-/// They are values of the forms' blossoms at the rectangle's sides. Their weights are the same for all forms and are computed once, which is less
-/// work than two cuts per side as soon as there are several forms. There are no divisions.
+/// They are values of the forms' blossoms at the rectangle's sides. Their weights are the same for all forms and are
+/// computed once, which is less work than two cuts per side as soon as there are several forms. There are no divisions.
 pub fn restrict_rectangle(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
     let [p, q] = degrees;
     if p.max(q) >= MOST {
@@ -117,7 +117,8 @@ fn restrict_any(source: &[f64], [p, q]: [usize; 2], lower: [f64; 2], upper: [f64
     }
 }
 
-/// Row `k`: the weights of the coefficients in the blossom of degree `n` at `n − k` times `lower` and `k` times `upper`.
+/// Row `k`: the weights of the coefficients in the blossom of degree `n` at `n − k` times `lower` and `k` times
+/// `upper`.
 fn blossoms<const N: usize>(n: usize, lower: f64, upper: f64) -> [[f64; N]; N] {
     let mut rows = [[0.0; N]; N];
     for (k, row) in rows[..=n].iter_mut().enumerate() {

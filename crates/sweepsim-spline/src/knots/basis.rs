@@ -9,8 +9,8 @@ type Basis = SmallVec<[f64; 8]>;
 impl KnotVector {
     /// The basis functions that may differ from 0 at `x`: the index of the first, and `degree + 1` values.
     ///
-    /// Outside the domain the polynomials of the first or last span are extrapolated. Inside, each value has a relative error of at
-    /// most `6p` roundings: only positive numbers are added.
+    /// Outside the domain the polynomials of the first or last span are extrapolated. Inside, each value has a relative
+    /// error of at most `6p` roundings: only positive numbers are added.
     pub fn basis(&self, x: f64) -> (usize, Vec<f64>) {
         let span = self.span(x);
         (span - self.degree, self.basis_in(span, x, self.degree).to_vec())
@@ -64,8 +64,8 @@ impl KnotVector {
         if sum.is_nan() { f64::INFINITY } else { sum.max(1.0) }
     }
 
-    /// The `order`-th derivatives of `N_{span−p}, …, N_span` at `x`: from the functions of degree `p − order` upwards by
-    /// `N′_{i,q+1} = (q+1) (N_{i,q}/(t_{i+q+1}−t_i) − N_{i+1,q}/(t_{i+q+2}−t_{i+1}))`.
+    /// The `order`-th derivatives of `N_{span−p}, …, N_span` at `x`: from the functions of degree `p − order` upwards
+    /// by `N′_{i,q+1} = (q+1) (N_{i,q}/(t_{i+q+1}−t_i) − N_{i+1,q}/(t_{i+q+2}−t_{i+1}))`.
     pub(crate) fn derivative_in(&self, span: usize, x: f64, order: usize) -> Basis {
         if order > self.degree {
             let poison = x * 0.0;

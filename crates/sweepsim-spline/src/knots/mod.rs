@@ -1,7 +1,7 @@
 //! Knot vectors: the univariate B-spline bases.
 //!
-//! Notation: degree `p`, order `p + 1`, knots `t₀ ≤ … ≤ t_{n+p}`, `n` basis functions `N_i` with support `[t_i, t_{i+p+1}]`,
-//! domain `[t_p, t_n]`.
+//! Notation: degree `p`, order `p + 1`, knots `t₀ ≤ … ≤ t_{n+p}`, `n` basis functions `N_i` with support
+//! `[t_i, t_{i+p+1}]`, domain `[t_p, t_n]`.
 
 mod basis;
 mod construct;
@@ -9,7 +9,8 @@ mod error;
 
 pub use error::KnotError;
 
-/// A checked knot vector with its degree: sorted and finite, with no knot repeated more than degree + 1 times and a nonempty domain.
+/// A checked knot vector with its degree: sorted and finite, with no knot repeated more than degree + 1 times and a
+/// nonempty domain.
 ///
 /// ```
 /// use sweepsim_spline::{KnotKind, KnotVector};

@@ -1,7 +1,7 @@
 //! Sums and products, on the common refinement of the knots.
 //!
-//! A sum keeps the higher degree, a product has the sum of the degrees; at every knot the result is as smooth as the less
-//! smooth operand. A product is formed piece by piece in Bernstein form; the pieces are joined by their blossoms.
+//! A sum keeps the higher degree, a product has the sum of the degrees; at every knot the result is as smooth as the
+//! less smooth operand. A product is formed piece by piece in Bernstein form; the pieces are joined by their blossoms.
 
 use super::pieces::PieceTensor;
 use super::{BSpline, Knots, SplineError};
@@ -29,8 +29,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count), [`Dimension`](SplineError::Dimension), [`Domain`](SplineError::Domain) if numbers of
-    /// variables, components, or the domains differ; [`Size`](SplineError::Size).
+    /// [`Count`](SplineError::Count), [`Dimension`](SplineError::Dimension), [`Domain`](SplineError::Domain) if numbers
+    /// of variables, components, or the domains differ; [`Size`](SplineError::Size).
     pub fn add(&self, other: &Self) -> Result<Self, SplineError> {
         self.combine(other, |a, b| a + b)
     }
@@ -124,8 +124,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count) for no rows or more than eight; [`Dimension`](SplineError::Dimension) unless each has as many
-    /// components as there are rows; as [`mul`](Self::mul).
+    /// [`Count`](SplineError::Count) for no rows or more than eight; [`Dimension`](SplineError::Dimension) unless each
+    /// has as many components as there are rows; as [`mul`](Self::mul).
     pub fn determinant(rows: &[Self]) -> Result<Self, SplineError> {
         let n = rows.len();
         let count = SplineError::Count { expected: 8, found: n };

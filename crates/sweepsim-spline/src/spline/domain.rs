@@ -101,8 +101,9 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Axis`](SplineError::Axis); [`Count`](SplineError::Count), [`Dimension`](SplineError::Dimension) if the numbers of variables
-    /// or components differ; [`Domain`](SplineError::Domain) if the domains do not meet, or degree or other knots differ.
+    /// [`Axis`](SplineError::Axis); [`Count`](SplineError::Count), [`Dimension`](SplineError::Dimension) if the numbers
+    /// of variables or components differ; [`Domain`](SplineError::Domain) if the domains do not meet, or degree or
+    /// other knots differ.
     pub fn join(&self, other: &Self, axis: usize) -> Result<Self, SplineError> {
         self.check_axis(axis)?;
         self.same_shape(other)?;
@@ -205,8 +206,8 @@ impl BSpline {
         self.slice(axis, if upper { end } else { start })
     }
 
-    /// The spline as a function of more variables: a new variable `axis` with the domain of `knots`, on which it does not
-    /// depend. Exact.
+    /// The spline as a function of more variables: a new variable `axis` with the domain of `knots`, on which it does
+    /// not depend. Exact.
     ///
     /// This is cheapest if the new variable has degree 0.
     ///
@@ -238,8 +239,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count) unless there is one entry a variable; [`Axis`](SplineError::Axis) for an entry that is
-    /// repeated or out of range.
+    /// [`Count`](SplineError::Count) unless there is one entry a variable; [`Axis`](SplineError::Axis) for an entry
+    /// that is repeated or out of range.
     pub fn permute(&self, axes: &[usize]) -> Result<Self, SplineError> {
         let n = self.variables();
         if axes.len() != n {
@@ -301,7 +302,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Axis`](SplineError::Axis); [`Knots`](SplineError::Knots) if `lo ≥ hi`, or rounding makes knots coincide too often.
+    /// [`Axis`](SplineError::Axis); [`Knots`](SplineError::Knots) if `lo ≥ hi`, or rounding makes knots coincide too
+    /// often.
     pub fn reparametrise(&self, axis: usize, lo: f64, hi: f64) -> Result<Self, SplineError> {
         self.check_axis(axis)?;
         let target = self.knots[axis]

@@ -25,8 +25,9 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count) unless there is one coordinate for each variable; [`Outside`](SplineError::Outside) for one that is outside the domain (of
-    /// periodic knots, outside the stored period) or NaN.
+    /// [`Count`](SplineError::Count) unless there is one coordinate for each variable;
+    /// [`Outside`](SplineError::Outside) for one that is outside the domain (of periodic knots, outside the stored
+    /// period) or NaN.
     pub fn try_evaluate(&self, point: &[f64]) -> Result<Vec<f64>, SplineError> {
         let (expected, found) = (self.variables(), point.len());
         if found != expected {
@@ -41,7 +42,8 @@ impl BSpline {
         Ok(self.evaluate(point))
     }
 
-    /// The value at `point` (one coordinate per variable): `dimension()` numbers. Outside the domain the polynomials at its border are extrapolated.
+    /// The value at `point` (one coordinate per variable): `dimension()` numbers. Outside the domain the polynomials at
+    /// its border are extrapolated.
     pub fn evaluate(&self, point: &[f64]) -> Vec<f64> {
         let mut value = vec![0.0; self.dimension];
         self.evaluate_into(point, &mut value);
@@ -65,7 +67,8 @@ impl BSpline {
 
     /// The value at `point`, and a bound on the distance of each component from that of the exact spline.
     ///
-    /// Each basis function carries `6p` roundings, the sum `p + 2`; outside the domain the bound grows as the polynomials do.
+    /// Each basis function carries `6p` roundings, the sum `p + 2`; outside the domain the bound grows as the
+    /// polynomials do.
     pub fn evaluate_with_error(&self, point: &[f64]) -> (Vec<f64>, f64) {
         let (mut growth, mut roundings) = (1.0, 0);
         for (axis, vector) in self.knots.iter().enumerate() {
@@ -126,8 +129,8 @@ impl BSpline {
         })
     }
 
-    /// Value and first derivatives at `point`: `value` gets the components, `slopes` the derivative by the first variable
-    /// (all its components), then by the second, and so on; each as far as it has room.
+    /// Value and first derivatives at `point`: `value` gets the components, `slopes` the derivative by the first
+    /// variable (all its components), then by the second, and so on; each as far as it has room.
     ///
     /// For many points see [`evaluate_jacobian_batch`](Self::evaluate_jacobian_batch), which keeps its memory.
     pub fn evaluate_jacobian_into(&self, point: &[f64], value: &mut [f64], slopes: &mut [f64]) {
@@ -195,9 +198,11 @@ impl BSpline {
         }
     }
 
-    /// The values at many points: `points` has `variables()` coordinates per point, `values` room for `dimension()` numbers each.
+    /// The values at many points: `points` has `variables()` coordinates per point, `values` room for `dimension()`
+    /// numbers each.
     ///
-    /// Evaluates as many points as both slices have room for, and returns their number. For a spline in no variables, as many as there is room for.
+    /// Evaluates as many points as both slices have room for, and returns their number. For a spline in no variables,
+    /// as many as there is room for.
     pub fn evaluate_batch(&self, points: &[f64], values: &mut [f64]) -> usize {
         let count = self.batch_size(points).min(values.len() / self.dimension);
         for (k, value) in values.chunks_exact_mut(self.dimension).take(count).enumerate() {
@@ -206,8 +211,9 @@ impl BSpline {
         count
     }
 
-    /// Values and first derivatives at many points: as [`evaluate_batch`](Self::evaluate_batch), and `slopes` has room for
-    /// `dimension() · variables()` numbers per point, laid out as by [`evaluate_jacobian_into`](Self::evaluate_jacobian_into).
+    /// Values and first derivatives at many points: as [`evaluate_batch`](Self::evaluate_batch), and `slopes` has room
+    /// for `dimension() · variables()` numbers per point, laid out as by
+    /// [`evaluate_jacobian_into`](Self::evaluate_jacobian_into).
     ///
     /// ```
     /// use sweepsim_spline::{BSpline, KnotVector};

@@ -29,15 +29,15 @@ pub(crate) type Knots = SmallVec<[KnotVector; 3]>;
 /// A tensor-product B-spline, a piecewise polynomial map from a box in `Rⁿ` to `Rᵐ`: curve, surface, volume and beyond.
 ///
 /// One [`KnotVector`] per variable, and a grid of control points of [`dimension`](Self::dimension) `m` numbers each.
-/// The first variable runs fastest among the points, the components fastest of all: component `k` of point `(i₀, i₁)` is at
-/// `k + m (i₀ + n₀ i₁)`.
+/// The first variable runs fastest among the points, the components fastest of all: component `k` of point `(i₀, i₁)`
+/// is at `k + m (i₀ + n₀ i₁)`.
 ///
 /// # Guarantees
 ///
 /// - **Evaluation is total.** Outside the domain the polynomials at its border are extrapolated; a missing coordinate
 ///   counts as NaN. Operations with requirements on their arguments return a [`SplineError`] that says what was wrong.
-/// - **Every operation carries its rounding error**, as for [`Bernstein`](crate::Bernstein): [`error`](Self::error) bounds
-///   for every coefficient the distance from what exact arithmetic would have given.
+/// - **Every operation carries its rounding error**, as for [`Bernstein`](crate::Bernstein): [`error`](Self::error)
+///   bounds for every coefficient the distance from what exact arithmetic would have given.
 ///
 /// # Example
 ///

@@ -196,8 +196,8 @@ impl BSpline {
     /// # Errors
     ///
     /// [`Count`](SplineError::Count) unless there is one piece for each box between the breakpoints;
-    /// [`Dimension`](SplineError::Dimension); [`NotExact`](SplineError::NotExact) if the pieces do not meet as smoothly as
-    /// the knots require, or have a higher degree.
+    /// [`Dimension`](SplineError::Dimension); [`NotExact`](SplineError::NotExact) if the pieces do not meet as smoothly
+    /// as the knots require, or have a higher degree.
     pub fn from_pieces(knots: Vec<KnotVector>, pieces: &[BernsteinMap]) -> Result<Self, SplineError> {
         let dimension = pieces.first().map_or(0, BernsteinMap::dimension);
         super::coefficient_count(&knots, dimension)?;

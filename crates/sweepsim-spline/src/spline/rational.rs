@@ -7,10 +7,12 @@ use crate::knots::KnotVector;
 use crate::rounding::{UNDERFLOW, UNIT, magnitude, quotient_range, up};
 use crate::spline::{BSpline, SplineError};
 
-/// A rational tensor-product B-spline, a map from a box in `Rⁿ` to `Rᵐ`: the quotient of a B-spline and a positive weight.
+/// A rational tensor-product B-spline, a map from a box in `Rⁿ` to `Rᵐ`: the quotient of a B-spline and a positive
+/// weight.
 ///
 /// Kept in homogeneous form, a [`BSpline`] with `m + 1` components `(w x₁, …, w xₘ, w)`; every weight coefficient is
-/// positive beyond its error bound. Operations that do not change the function (knots, degrees, domain) are those of [`BSpline`].
+/// positive beyond its error bound. Operations that do not change the function (knots, degrees, domain) are those of
+/// [`BSpline`].
 ///
 /// ```
 /// use sweepsim_spline::RationalSpline;
@@ -157,7 +159,8 @@ impl RationalSpline {
 
     /// The point at `parameters`, and a bound on the error of each coordinate.
     ///
-    /// With numerator and weight off by at most `e`, the quotient `q` is by at most `e (1 + |q|)/(w − e)` and a rounding.
+    /// With numerator and weight off by at most `e`, the quotient `q` is by at most `e (1 + |q|)/(w − e)` and a
+    /// rounding.
     pub fn evaluate_with_error(&self, parameters: &[f64]) -> (Vec<f64>, f64) {
         let (mut value, error) = self.homogeneous.evaluate_with_error(parameters);
         let weight = value.pop().unwrap_or(f64::NAN);
@@ -173,7 +176,8 @@ impl RationalSpline {
         (value, error)
     }
 
-    /// The points at many parameters: `variables()` numbers per point in, `dimension()` out; returns how many were done.
+    /// The points at many parameters: `variables()` numbers per point in, `dimension()` out; returns how many were
+    /// done.
     pub fn evaluate_batch(&self, parameters: &[f64], values: &mut [f64]) -> usize {
         let (n, m) = (self.variables(), self.dimension());
         let count = parameters
@@ -193,7 +197,8 @@ impl RationalSpline {
         count
     }
 
-    /// All partial derivatives at `parameters` up to the total `order`, by Leibniz' rule from those of the homogeneous form.
+    /// All partial derivatives at `parameters` up to the total `order`, by Leibniz' rule from those of the homogeneous
+    /// form.
     pub fn derivatives(&self, parameters: &[f64], order: usize) -> Derivatives {
         self.homogeneous.derivatives(parameters, order).quotient()
     }

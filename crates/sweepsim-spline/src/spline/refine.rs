@@ -10,8 +10,8 @@ use crate::rounding::up;
 impl BSpline {
     /// The same spline with the knot `value` inserted `times` times in variable `axis` (Boehm's algorithm).
     ///
-    /// Up to multiplicity degree + 1, at which the spline splits there. Only convex combinations are used, so the error grows
-    /// only by rounding.
+    /// Up to multiplicity degree + 1, at which the spline splits there. Only convex combinations are used, so the error
+    /// grows only by rounding.
     ///
     /// # Errors
     ///
@@ -57,8 +57,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`NotExact`](SplineError::NotExact) if the spline is certainly not that smooth there, with a bound on the error of the
-    /// result; [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) if `value` is not an inner knot.
+    /// [`NotExact`](SplineError::NotExact) if the spline is certainly not that smooth there, with a bound on the error
+    /// of the result; [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) if `value` is not an inner knot.
     pub fn remove_knot(&self, axis: usize, value: f64) -> Result<Self, SplineError> {
         let (mut result, again) = self.without_knot(axis, value)?;
         result.accept(&self.coefficients, self.error, &again.coefficients, again.error)?;
@@ -132,12 +132,13 @@ impl BSpline {
         self.on_knots(axis, target)
     }
 
-    /// The same spline with the degree in variable `axis` and the multiplicity of every knot there lower by one. The ends become open.
+    /// The same spline with the degree in variable `axis` and the multiplicity of every knot there lower by one. The
+    /// ends become open.
     ///
     /// # Errors
     ///
-    /// [`NotExact`](SplineError::NotExact) if the spline certainly is not of that degree or not that smooth, with a bound on
-    /// the error of the result (infinite for degree 0); [`Axis`](SplineError::Axis).
+    /// [`NotExact`](SplineError::NotExact) if the spline certainly is not of that degree or not that smooth, with a
+    /// bound on the error of the result (infinite for degree 0); [`Axis`](SplineError::Axis).
     pub fn reduce(&self, axis: usize) -> Result<Self, SplineError> {
         self.check_axis(axis)?;
         let vector = &self.knots[axis];
@@ -172,8 +173,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Axis`](SplineError::Axis); [`Domain`](SplineError::Domain); [`NotExact`](SplineError::NotExact) if the target's degree
-    /// is lower or it lacks a knot that the spline needs.
+    /// [`Axis`](SplineError::Axis); [`Domain`](SplineError::Domain); [`NotExact`](SplineError::NotExact) if the
+    /// target's degree is lower or it lacks a knot that the spline needs.
     pub fn with_knots(&self, axis: usize, target: &KnotVector) -> Result<Self, SplineError> {
         self.check_axis(axis)?;
         let vector = &self.knots[axis];
@@ -220,7 +221,8 @@ impl BSpline {
     }
 }
 
-/// The open knots of `degree` with the breakpoints of `vector`, inner ones as often as `times` makes of their multiplicity.
+/// The open knots of `degree` with the breakpoints of `vector`, inner ones as often as `times` makes of their
+/// multiplicity.
 fn changed(vector: &KnotVector, degree: usize, times: impl Fn(usize) -> usize) -> Option<KnotVector> {
     let breakpoints = vector.breakpoints();
     let [first, inner @ .., last] = breakpoints.as_slice() else {
@@ -234,7 +236,8 @@ fn changed(vector: &KnotVector, degree: usize, times: impl Fn(usize) -> usize) -
     KnotVector::open(degree, &list).ok()
 }
 
-/// Reduces the rows of Bernstein pieces of `degree ≥ 1` by one, as [`Bernstein::reduce`](crate::Bernstein::reduce) does.
+/// Reduces the rows of Bernstein pieces of `degree ≥ 1` by one, as [`Bernstein::reduce`](crate::Bernstein::reduce)
+/// does.
 fn reduction(pieces: &[Row], degree: usize) -> Vec<Row> {
     let d = degree as f64;
     let middle = degree.div_ceil(2);

@@ -1,9 +1,10 @@
 //! Linear maps along one axis, and their accuracy.
 //!
-//! Knot insertion, degree elevation, the way to Bernstein pieces and back: each makes every new coefficient a short linear
-//! combination of old ones. The combinations are found by running the algorithm (Boehm's insertion, de Casteljau's blossom,
-//! elevation) on *rows* instead of on control points, starting from unit rows, and are then applied once, along any
-//! axis. A row carries the data needed to bound the error of the result; the proof is in `docs/error-bounds.md`.
+//! Knot insertion, degree elevation, the way to Bernstein pieces and back: each makes every new coefficient a short
+//! linear combination of old ones. The combinations are found by running the algorithm (Boehm's insertion, de
+//! Casteljau's blossom, elevation) on *rows* instead of on control points, starting from unit rows, and are then
+//! applied once, along any axis. A row carries the data needed to bound the error of the result; the proof is in
+//! `docs/error-bounds.md`.
 
 use crate::kernel::{Along, accumulate};
 use crate::knots::KnotVector;
@@ -165,9 +166,9 @@ pub(crate) fn refinement(vector: &KnotVector, values: &[f64]) -> (Vec<f64>, Vec<
 
 /// The rows of the Bernstein coefficients, `degree + 1` for each span between neighbouring `breakpoints`.
 ///
-/// `breakpoints` are sorted, without repetition, and contain those of `vector`. Coefficient `j` on `[a, b]` is the blossom
-/// at `a` (`p − j` times) and `b` (`j` times), by de Boor's algorithm: as `[a, b]` is within one span of the knots, every step is
-/// a convex combination.
+/// `breakpoints` are sorted, without repetition, and contain those of `vector`. Coefficient `j` on `[a, b]` is the
+/// blossom at `a` (`p − j` times) and `b` (`j` times), by de Boor's algorithm: as `[a, b]` is within one span of the
+/// knots, every step is a convex combination.
 pub(crate) fn extraction(vector: &KnotVector, breakpoints: &[f64]) -> Vec<Row> {
     let p = vector.degree();
     let mut pieces = Vec::with_capacity((breakpoints.len() - 1) * (p + 1));

@@ -36,13 +36,13 @@ impl BSpline {
         Ok(Self::computed(knots, m, coefficients, error))
     }
 
-    /// The spline of a Bernstein map whose image lies in one box between neighbouring breakpoints: a curve in a surface,
-    /// an affine map, any other form.
+    /// The spline of a Bernstein map whose image lies in one box between neighbouring breakpoints: a curve in a
+    /// surface, an affine map, any other form.
     ///
     /// # Errors
     ///
-    /// [`Count`](SplineError::Count) unless `inner` has one component a variable; [`Outside`](SplineError::Outside) if its
-    /// enclosure is not within one span of that variable: split the inner map where it crosses the knots.
+    /// [`Count`](SplineError::Count) unless `inner` has one component a variable; [`Outside`](SplineError::Outside) if
+    /// its enclosure is not within one span of that variable: split the inner map where it crosses the knots.
     pub fn compose(&self, inner: &BernsteinMap) -> Result<BernsteinMap, SplineError> {
         if inner.dimension() != self.variables() {
             return Err(SplineError::Count {
@@ -106,8 +106,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Size`](SplineError::Size) for none; [`Count`](SplineError::Count), [`Domain`](SplineError::Domain) if variables or
-    /// domains differ.
+    /// [`Size`](SplineError::Size) for none; [`Count`](SplineError::Count), [`Domain`](SplineError::Domain) if
+    /// variables or domains differ.
     pub fn stack(parts: &[Self]) -> Result<Self, SplineError> {
         let first = parts.first().ok_or(SplineError::Size)?;
         let mut knots = first.knots.clone();
@@ -131,8 +131,8 @@ impl BSpline {
     ///
     /// # Errors
     ///
-    /// [`Dimension`](SplineError::Dimension) unless each row of `A` has one entry a component; [`Size`](SplineError::Size) for
-    /// no rows.
+    /// [`Dimension`](SplineError::Dimension) unless each row of `A` has one entry a component;
+    /// [`Size`](SplineError::Size) for no rows.
     pub fn transform(&self, rows: &[(Vec<f64>, f64)]) -> Result<Self, SplineError> {
         if let Some((odd, _)) = rows.iter().find(|(row, _)| row.len() != self.dimension) {
             return Err(SplineError::Dimension {

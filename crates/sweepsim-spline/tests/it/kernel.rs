@@ -12,7 +12,8 @@ fn numbers(random: &mut Random, n: usize) -> Vec<f64> {
     (0..n).map(|_| random.between(-1.0, 1.0)).collect()
 }
 
-/// A bound of the rounding of `steps` convex combinations of numbers below 1, with `|s| + |t|` to the power that steps need.
+/// A bound of the rounding of `steps` convex combinations of numbers below 1, with `|s| + |t|` to the power that steps
+/// need.
 fn bound(steps: usize, growth: f64) -> f64 {
     4.0 * f64::EPSILON * (steps + 1) as f64 * growth.powi(steps as i32)
 }
@@ -24,7 +25,8 @@ fn value(degrees: &[usize], coefficients: &[f64], point: &[f64]) -> RBig {
 proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(96), failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Splitting along any variable of a tensor, at any length of lines (those known to the compiler and longer ones), and both kept parts.
+    /// Splitting along any variable of a tensor, at any length of lines (those known to the compiler and longer ones),
+    /// and both kept parts.
     #[test]
     fn parts_are_the_form_on_its_parts(seed: u64, p in 0..9_usize, q in 0..7_usize, copies in 1..4_usize, along_second: bool) {
         let mut random = Random(seed);
@@ -97,7 +99,8 @@ proptest! {
         }
     }
 
-    /// Products, elevation, derivatives, Wronskians and values of lines; pairs of numbers stand for coefficients that are not numbers.
+    /// Products, elevation, derivatives, Wronskians and values of lines; pairs of numbers stand for coefficients that
+    /// are not numbers.
     #[test]
     fn lines(seed: u64, p in 0..9_usize, q in 0..9_usize, by in 0..5_usize) {
         let mut random = Random(seed);

@@ -1,4 +1,5 @@
-//! Arcs in planes along the dexels in closed form, against charts: the same crossings from other systems, bounds and certificates.
+//! Arcs in planes along the dexels in closed form, against charts: the same crossings from other systems, bounds and
+//! certificates.
 
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::translations::{TOLERANCE, UP, agree, tools};
@@ -94,8 +95,9 @@ proptest! {
         check(number, &path(start, &[arc], [0.5, 0.2, 0.1], UP))?;
     }
 
-    /// Over dexel lines, or along rows of them that are as far from the plane as the tool is wide, with the radius of the tool, full circles, each twice. Not both: where a tool
-    /// that dives along a line turns away from it, a line in its wall ends at a height that grows with the fourth root of how far the line is displaced.
+    /// Over dexel lines, or along rows of them that are as far from the plane as the tool is wide, with the radius of
+    /// the tool, full circles, each twice. Not both: where a tool that dives along a line turns away from it, a line in
+    /// its wall ends at a height that grows with the fourth root of how far the line is displaced.
     #[test]
     fn degenerate(number in 0_usize..13, which in 0_usize..4, quarter in 0..4_i32, turns in 1..5_i32, left in any::<bool>(), across in any::<bool>(), aside in any::<bool>()) {
         let lines = Grid::new([-11.5, -10.5], [11.5, 10.5], [23, 21]).expect("a grid");
@@ -155,8 +157,8 @@ fn bottom(pointed: bool, rho: f64) -> f64 {
     }
 }
 
-/// The least value of a function on [0, 1], if it has one least value in the neighbourhood of each sample that is not above the next ones: on a full circle, two samples
-/// are at one place.
+/// The least value of a function on [0, 1], if it has one least value in the neighbourhood of each sample that is not
+/// above the next ones: on a full circle, two samples are at one place.
 pub fn least(function: impl Fn(f64) -> f64) -> f64 {
     const SAMPLES: usize = 1000;
     let share = |n: usize| n.min(SAMPLES) as f64 / SAMPLES as f64;

@@ -1,5 +1,6 @@
-//! Level arcs and helices exactly or almost as wide as a wall or an edge of the tool, as cycles for holes of twice its diameter have them: lines next to
-//! the centre touch the tool all along. In closed form, against charts and against samples in time.
+//! Level arcs and helices exactly or almost as wide as a wall or an edge of the tool, as cycles for holes of twice its
+//! diameter have them: lines next to the centre touch the tool all along. In closed form, against charts and against
+//! samples in time.
 
 use crate::translations::{TOLERANCE, UP, agree, same, tools};
 use proptest::prelude::*;
@@ -74,7 +75,8 @@ fn cases() -> impl Strategy<Value = Case> {
 }
 
 fn check(number: usize, case: &Case, tolerance: f64) -> TestCaseResult {
-    // The form tool has a face that ends level at an edge, where almost level helices have gaps shorter than the tolerance.
+    // The form tool has a face that ends level at an edge, where almost level helices have gaps shorter than the
+    // tolerance.
     prop_assume!(number != 11 || case.rise == 0.0 || case.rise.abs() > 1e-2);
     let (name, tool, _) = &tools()[number];
     let [closed, _] = agree(name, tool, &case.path(), &Case::grid(21), tolerance)?;
@@ -125,7 +127,8 @@ fn bottoms() -> [(&'static str, Tool, Bottom); 3] {
     ]
 }
 
-/// The lowest ends of lines about the centre of an arc of the tool's radius, against samples in time: lines that the tool does not reach for certain have none.
+/// The lowest ends of lines about the centre of an arc of the tool's radius, against samples in time: lines that the
+/// tool does not reach for certain have none.
 #[test]
 fn as_by_samples() {
     const SAMPLES: u32 = 20_000;

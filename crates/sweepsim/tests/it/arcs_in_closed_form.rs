@@ -1,4 +1,5 @@
-//! Level arcs and helices in closed form, against charts: the same crossings from other systems, bounds and certificates.
+//! Level arcs and helices in closed form, against charts: the same crossings from other systems, bounds and
+//! certificates.
 
 use crate::translations::{TOLERANCE, UP, agree, same, tools};
 use proptest::prelude::*;

@@ -138,8 +138,9 @@ const CIRCLES: [[f64; 2]; 6] = [[3.0, 0.0], [2.2, 0.0], [1.0, 0.0], [1.0, 1.0], 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2 * cases()))]
 
-    /// Lines beside the place where a circle of the tool reaches farthest from the arc's axis or least far: an edge, or where a torus meets a flat bottom.
-    /// The reference takes minutes where lines so close are in the plane of a flat face, as of an axis that hardly leaves the level.
+    /// Lines beside the place where a circle of the tool reaches farthest from the arc's axis or least far: an edge, or
+    /// where a torus meets a flat bottom. The reference takes minutes where lines so close are in the plane of a flat
+    /// face, as of an axis that hardly leaves the level.
     #[test]
     fn where_circles_reach_farthest(
         number in 0_usize..13, circle in prop::sample::select(&CIRCLES[..]), radius in 0.3..9.0_f64, turns in [-PI..PI, 0.0..1.0, -6.0..6.0],
@@ -182,7 +183,8 @@ fn sampled(number: usize) -> (Tool, fn(f64, f64) -> f64) {
     }
 }
 
-/// Compares the ends of all dexels with samples in time: just beyond them, no point is ever inside the tool, and just before, it is.
+/// Compares the ends of all dexels with samples in time: just beyond them, no point is ever inside the tool, and just
+/// before, it is.
 fn check_samples(number: usize, start: [f64; 3], arc: Arc, axis: [f64; 3], frame: Frame) -> TestCaseResult {
     let (tool, depth) = sampled(number);
     let path = path(start, &[arc], [0.0; 3], axis);

@@ -1,4 +1,5 @@
-//! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and against samples in time.
+//! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and against
+//! samples in time.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, small};
 use crate::grazing_curves::tools;
@@ -129,8 +130,9 @@ proptest! {
         check(number, &path, &grid([23, 21]).in_frame(frame))?;
     }
 
-    /// About dexel lines, about the tool's own tip or a line through it, along the grid, with full turns. The bud turns about lines beside them: its rational normals are too inexact for a line within a
-    /// billionth of a millimetre of a point of its surface that does not move.
+    /// About dexel lines, about the tool's own tip or a line through it, along the grid, with full turns. The bud turns
+    /// about lines beside them: its rational normals are too inexact for a line within a billionth of a millimetre of a
+    /// point of its surface that does not move.
     #[test]
     fn degenerate(number in 0_usize..3, radius in 0..4_usize, stands in 0..4_i32, parts in 3..5_i32, left in any::<bool>(), place in [0..3_i32, 0..3_i32], rise in 0..3_usize) {
         let lines = grid([23, 21]);

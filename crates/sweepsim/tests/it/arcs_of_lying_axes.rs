@@ -1,4 +1,5 @@
-//! Arcs of tools that lie in the plane of the arc, along the dexels or across them, as dexels along x and y see those of `G18` and `G19`: in closed form, against charts and against samples in time.
+//! Arcs of tools that lie in the plane of the arc, along the dexels or across them, as dexels along x and y see those
+//! of `G18` and `G19`: in closed form, against charts and against samples in time.
 
 use crate::arcs_along_dexels::{angles, least, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
@@ -28,7 +29,8 @@ impl Lie {
         if self.y { [0.0, sign, 0.0] } else { [sign, 0.0, 0.0] }
     }
 
-    /// The directions from the centre of an arc at 0° and 90°: the axis' without its sign, and that of the dexels, or the third one.
+    /// The directions from the centre of an arc at 0° and 90°: the axis' without its sign, and that of the dexels, or
+    /// the third one.
     fn plane(self) -> [[f64; 3]; 2] {
         let along @ [x, y, _] = self.axis().map(f64::abs);
         [along, if self.level { [y, x, 0.0] } else { [0.0, 0.0, 1.0] }]
@@ -86,7 +88,8 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
     prop::collection::vec(arc, 1..=count)
 }
 
-/// Level arcs are displaced within their plane for closed forms only, so that there may be other crossings within the tool.
+/// Level arcs are displaced within their plane for closed forms only, so that there may be other crossings within the
+/// tool.
 fn compare(lie: Lie, number: usize, path: &Path) -> TestCaseResult {
     if !lie.level {
         return check_in_general(number, path);
@@ -100,7 +103,8 @@ fn compare(lie: Lie, number: usize, path: &Path) -> TestCaseResult {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2 * cases(), ..ProptestConfig::default() })]
 
-    /// Wider and narrower than the tool, in both directions, more than a half turn among them; joined by straight ways in their plane, or out of it.
+    /// Wider and narrower than the tool, in both directions, more than a half turn among them; joined by straight ways
+    /// in their plane, or out of it.
     #[test]
     fn in_plane(lie in lies(), number in 0_usize..13, start in small(3.0), way in small(2.0), inside in any::<bool>(), arcs in arcs(3, 0.3..6.0)) {
         let way = if inside { lie.within(way) } else { way };
@@ -122,8 +126,9 @@ proptest! {
         check(number, &lie.path(start, &[arc], [0.5, 0.2, 0.1]))?;
     }
 
-    /// With the radius of the tool, full circles, each twice, over rows of dexels in the arc's plane, through tips and in walls. No row is in the plane of a face where it turns back,
-    /// for which charts take minutes: see [`in_planes_of_faces`].
+    /// With the radius of the tool, full circles, each twice, over rows of dexels in the arc's plane, through tips and
+    /// in walls. No row is in the plane of a face where it turns back, for which charts take minutes: see
+    /// [`in_planes_of_faces`].
     #[test]
     fn degenerate(lie in lies(), number in 0_usize..13, which in 0_usize..4, quarter in 0..4_i32, turns in 1..5_i32, left in any::<bool>()) {
         let lines = Grid::new([-11.5, -10.5], [11.5, 10.5], [23, 21]).expect("a grid");
@@ -226,7 +231,8 @@ proptest! {
     }
 }
 
-/// Rows of dexels in the planes of faces at the ends of arcs, and where the tool turns back, through tips and in walls: hardly a box, where charts alone take minutes.
+/// Rows of dexels in the planes of faces at the ends of arcs, and where the tool turns back, through tips and in walls:
+/// hardly a box, where charts alone take minutes.
 #[test]
 fn in_planes_of_faces() {
     let lines = Grid::new([-11.5, -10.5], [11.5, 10.5], [23, 21]).expect("a grid");

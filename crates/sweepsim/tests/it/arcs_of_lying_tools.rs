@@ -1,4 +1,5 @@
-//! Arcs in planes along the dexels of tools that lie across these, in closed form, against charts and against samples in time.
+//! Arcs in planes along the dexels of tools that lie across these, in closed form, against charts and against samples
+//! in time.
 
 use crate::arcs_along_dexels::{Arc, angles, direction, least, path, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
@@ -41,7 +42,8 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2 * cases(), ..ProptestConfig::default() })]
 
-    /// Wider and narrower than the tool, in both directions, more than a half turn among them; joined by straight ways in their plane, or out of it.
+    /// Wider and narrower than the tool, in both directions, more than a half turn among them; joined by straight ways
+    /// in their plane, or out of it.
     #[test]
     fn across(number in 0_usize..13, start in small(3.0), way in small(2.0), level in any::<bool>(), arcs in arcs(3, 0.3..6.0), positive in any::<bool>()) {
         let plane = arcs[0][1];
@@ -102,8 +104,9 @@ fn hardly_a_box() {
     check_boxes(some.map(|(_, tool, _)| tool), &path);
 }
 
-/// How far a line is inside the lying tool, as seen along the dexels, and the tool's lowest point on it if its axis is at `z`. Beside the tool and beyond its ends this is led by the distance alone, so
-/// that a search finds the time over the line, however short.
+/// How far a line is inside the lying tool, as seen along the dexels, and the tool's lowest point on it if its axis is
+/// at `z`. Beside the tool and beyond its ends this is led by the distance alone, so that a search finds the time over
+/// the line, however short.
 pub fn seen(pointed: bool, z: f64, along: f64, across: f64) -> [f64; 2] {
     let end = if pointed { 8.0 } else { 10.0 };
     let height = along.clamp(0.0, end);

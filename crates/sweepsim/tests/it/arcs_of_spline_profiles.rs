@@ -206,7 +206,8 @@ fn the_same_bytes_whatever_came_before() {
     assert_same_bytes(tool, &path);
 }
 
-/// A line so near to where a level part of the profile bounds the sweep that its patch is left to charts: then all patches around the axis are.
+/// A line so near to where a level part of the profile bounds the sweep that its patch is left to charts: then all
+/// patches around the axis are.
 #[test]
 fn patches_about_the_axis_are_left_to_charts_together() {
     let path = path(

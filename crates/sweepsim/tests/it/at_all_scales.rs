@@ -1,5 +1,5 @@
-//! The families of [`near_degenerate`](crate::near_degenerate) at more distances, close to each other: a scale of its own may hide between two powers of ten, such as the chord that a line cuts off a tool which it all but
-//! touches.
+//! The families of [`near_degenerate`](crate::near_degenerate) at more distances, close to each other: a scale of its
+//! own may hide between two powers of ten, such as the chord that a line cuts off a tool which it all but touches.
 
 use crate::near_degenerate::{
     Family, GENERIC, METHODS, MOST, about_a_line, around, cost, families, leaning, pose, through, tools, work,
@@ -12,8 +12,9 @@ fn scales(most: f64, factor: f64, count: i32) -> impl Iterator<Item = f64> {
     (0..count).map(move |k| most * factor.powi(k))
 }
 
-/// The line touches the ball at its tip at all times, but for its displacement, by which it cuts off a chord of 3e-5. A tip that rises by as much during the turn passes the ends of the chord:
-/// at two rises, within half a hundredth of each, where the line touches its way, it is solved again.
+/// The line touches the ball at its tip at all times, but for its displacement, by which it cuts off a chord of 3e-5. A
+/// tip that rises by as much during the turn passes the ends of the chord: at two rises, within half a hundredth of
+/// each, where the line touches its way, it is solved again.
 #[test]
 fn a_ball_that_rises_by_a_chord_while_it_turns_about_a_line() {
     let tool = Tool::ball(2.0, 7.0).unwrap();
@@ -32,7 +33,8 @@ fn a_ball_that_rises_by_a_chord_while_it_turns_about_a_line() {
     }
 }
 
-/// A flat bottom's speed along the axis is that of the displacement of tips, and of a turn by 1e-10. Where both cancel, a torus touches its envelope within 1e-12 of the bottom, and on one side of their joint only.
+/// A flat bottom's speed along the axis is that of the displacement of tips, and of a turn by 1e-10. Where both cancel,
+/// a torus touches its envelope within 1e-12 of the bottom, and on one side of their joint only.
 #[test]
 fn a_bottom_that_stops_beside_a_torus() {
     let tool = Tool::bull(2.0, 0.5, 7.0).unwrap();

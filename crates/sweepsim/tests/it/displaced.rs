@@ -1,11 +1,13 @@
-//! The closed forms and the general method compared: both displace lines and tips by a part of the tolerance, not always alike.
+//! The closed forms and the general method compared: both displace lines and tips by a part of the tolerance, not
+//! always alike.
 
 use proptest::prelude::*;
 use sweepsim::{Method, Options, Sweep, sweep};
 use sweepsim_dexel::{End, Grid, Interval, Source};
 use sweepsim_motion::{Path, Tool};
 
-/// Whether the ends agree, each within the tolerance measured across the surface. Intervals and gaps shorter than the tolerance may be missing or extra.
+/// Whether the ends agree, each within the tolerance measured across the surface. Intervals and gaps shorter than the
+/// tolerance may be missing or extra.
 pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
     alike(a, b, tolerance)
         || alike(
@@ -38,7 +40,8 @@ fn without_slivers(list: &[Interval], tolerance: f64) -> Vec<Interval> {
     joined
 }
 
-/// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside it.
+/// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside
+/// it.
 pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
     let on =
         |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
@@ -62,7 +65,8 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
         let steps = around
             .clone()
             .flat_map(|angle| [0.05, 0.3].map(|r| [r * angle.cos(), r * angle.sin()]));
-        // Where lines are solved again, seen from where they are solved first: two vertical tangents in one place magnify any difference.
+        // Where lines are solved again, seen from where they are solved first: two vertical tangents in one place
+        // magnify any difference.
         let again = [[6e-3, 1.970], [2e-2, 3.520], [6e-2, 5.323], [0.12, 1.154], [0.2, 2.747]];
         let moved = |[r, angle]: [f64; 2]| {
             [
@@ -78,8 +82,8 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
         if is_one {
             continue;
         }
-        // In a wall, ends of different moves may be those of different lines, since tips are displaced as well; and next to one that touches the volume
-        // others miss it.
+        // In a wall, ends of different moves may be those of different lines, since tips are displaced as well; and
+        // next to one that touches the volume others miss it.
         others.extend(around.map(|angle| displaced([angle.cos(), angle.sin()])));
         let is_between = are_between(&a, &others, tolerance);
         prop_assert!(is_between, "{name}: {:?}: {a:?} {b:?}", (i, j));
@@ -87,8 +91,8 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
     Ok([closed, charts])
 }
 
-/// Whether the intervals cover what lines displaced by no more than the tolerance all have in common, and nothing that none of them has, so that every end
-/// may be that of one between these.
+/// Whether the intervals cover what lines displaced by no more than the tolerance all have in common, and nothing that
+/// none of them has, so that every end may be that of one between these.
 fn are_between(own: &[Interval], displaced: &[Vec<Interval>], tolerance: f64) -> bool {
     let own = without_slivers(own, tolerance);
     let covers =

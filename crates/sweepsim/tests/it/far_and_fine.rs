@@ -1,6 +1,6 @@
-//! Moves a million times as long as the tool, tools moved along or across their own axis, and tolerances down to the least: a move costs about as much as
-//! its shorter neighbour, is certified, and removes the same. Where rounding decides what only a displacement of the tip should, the search would
-//! otherwise never end.
+//! Moves a million times as long as the tool, tools moved along or across their own axis, and tolerances down to the
+//! least: a move costs about as much as its shorter neighbour, is certified, and removes the same. Where rounding
+//! decides what only a displacement of the tip should, the search would otherwise never end.
 
 use std::time::{Duration, Instant};
 use sweepsim::{Method, Options, SweepError, sweep};
@@ -10,8 +10,8 @@ use sweepsim_solve::Monitor;
 
 /// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour.
 const THRIFTY: [(Method, f64); 2] = [(Method::General, 2.2), (Method::Surface, 2.2)];
-/// In the wall of a lollipop's neck, lines cannot be certified one by one at the least tolerance: charts repair them together.
-/// The boxes of `planes` are those of the curves, too.
+/// In the wall of a lollipop's neck, lines cannot be certified one by one at the least tolerance: charts repair them
+/// together. The boxes of `planes` are those of the curves, too.
 const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.5), (Method::Lines, 2.8)];
 
 /// Ends a sweep that takes far too long, and so makes it fail.
@@ -95,7 +95,8 @@ pub struct Apart {
     pub across_surface: f64,
 }
 
-/// How far ends of the same intervals are apart, up to a height. Intervals of lines that cut into a ball no deeper than this may be missing.
+/// How far ends of the same intervals are apart, up to a height. Intervals of lines that cut into a ball no deeper than
+/// this may be missing.
 pub fn difference(a: &Dexels, b: &Dexels, top: f64, depth: f64) -> Apart {
     let mut most = Apart::default();
     for line in 0..a.grid().len() {

@@ -1,6 +1,8 @@
-//! What lines under the pole of a free-form patch cost at tolerances at which rounding hides how far they are from its way: in boxes, as in [`near_degenerate`](crate::near_degenerate).
+//! What lines under the pole of a free-form patch cost at tolerances at which rounding hides how far they are from its
+//! way: in boxes, as in [`near_degenerate`](crate::near_degenerate).
 //!
-//! `cargo test -p sweepsim --release --test it fine_poles -- --include-ignored --nocapture` prints the table of the docs.
+//! `cargo test -p sweepsim --release --test it fine_poles -- --include-ignored --nocapture` prints the table of the
+//! docs.
 
 use crate::far_and_fine::difference;
 use crate::grazing_curves::{bit, bud, pad};
@@ -14,8 +16,8 @@ use sweepsim_motion::Tool;
 /// Tolerances down to almost the least.
 const FINE: [f64; 5] = [1e-7, 3e-8, 1e-8, 1e-9, 6e-10];
 
-/// Lines that rounding leaves undecided are given up early, and solved again at a distance, which takes about as many boxes as all lines do otherwise. `lines` leaves to charts what would
-/// have taken it fewer.
+/// Lines that rounding leaves undecided are given up early, and solved again at a distance, which takes about as many
+/// boxes as all lines do otherwise. `lines` leaves to charts what would have taken it fewer.
 fn cheap_at_fine_tolerances(tool: (&str, &Tool), methods: &[Method], list: &[Family], distances: &[f64]) {
     let wrong = dear_at_fine_tolerances(tool, methods, list, distances, MOST);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -74,7 +76,8 @@ fn flat_poles() -> [(&'static str, Tool); 4] {
     [("pad", pad()), ("bit", bit()), ("ring", ring()), ("burr", burr())]
 }
 
-/// Most cost as little; where rounding hides a few of the lines, these are solved again. Before rounding was bounded cell by cell, all 15 in a row were, for up to 41 times the boxes.
+/// Most cost as little; where rounding hides a few of the lines, these are solved again. Before rounding was bounded
+/// cell by cell, all 15 in a row were, for up to 41 times the boxes.
 #[test]
 fn poles_as_flat_as_a_cubic_cost_little_by_default() {
     const DEAREST: f64 = 10.0;

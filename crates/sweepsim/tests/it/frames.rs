@@ -15,7 +15,8 @@ fn seen(pose: &Pose, frame: &Frame) -> Pose {
     Pose::new(tip, turn(Vector3::from(pose.axis()))).expect("a pose")
 }
 
-/// Ends of the two agree wherever both have as many; lines near a silhouette may differ. Says how many lines were compared, and differed.
+/// Ends of the two agree wherever both have as many; lines near a silhouette may differ. Says how many lines were
+/// compared, and differed.
 fn compare(a: &Dexels, b: &Dexels) -> (usize, usize) {
     let (mut lines, mut differ) = (0, 0);
     for index in 0..a.grid().len() {
@@ -71,8 +72,8 @@ proptest! {
     }
 }
 
-/// How deep a point is in what a ball end of radius 2 sweeps along a quarter of a circle of radius 6 about the world's x (the tip's), its
-/// axis along x: a ball at the tip's side and a rod.
+/// How deep a point is in what a ball end of radius 2 sweeps along a quarter of a circle of radius 6 about the world's
+/// x (the tip's), its axis along x: a ball at the tip's side and a rod.
 fn quarter_depth(p: [f64; 3]) -> f64 {
     // The tool is symmetric about x-lines through the circle: distance from the arc in y, z, and where along x.
     let angle = p[2].atan2(p[1]).clamp(0.0, std::f64::consts::FRAC_PI_2);
@@ -149,7 +150,8 @@ fn three_sets_cut_one_part() {
     assert!(part.statistics.iter().all(|s| s.unresolved.is_empty()));
     // Where lines cross they agree.
     assert_eq!(part.remaining.disagreements(), 0);
-    // Sets along one axis err by the rule of the midpoint; a closed surface with exact normals by the square of the distance of lines.
+    // Sets along one axis err by the rule of the midpoint; a closed surface with exact normals by the square of the
+    // distance of lines.
     let volumes = part.remaining.sets().each_ref().map(Dexels::volume);
     let mesh = part.remaining.surface().unwrap().soup().unwrap().volume();
     let fine = TriDexels::new(min, max, cells.map(|n| 3 * n), &block).unwrap();

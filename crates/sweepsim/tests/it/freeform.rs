@@ -15,7 +15,8 @@ fn revolved(pieces: &[Vec<[f64; 3]>]) -> Tool {
     weighted(pieces, 0.0)
 }
 
-/// The same surfaces with all homogeneous coordinates multiplied by `1 + bend u v`: where it is not 0, nothing in their forms tells that they are round.
+/// The same surfaces with all homogeneous coordinates multiplied by `1 + bend u v`: where it is not 0, nothing in their
+/// forms tells that they are round.
 fn weighted(pieces: &[Vec<[f64; 3]>], bend: f64) -> Tool {
     let factor = Bernstein::new(&[1, 1], vec![1.0, 1.0, 1.0, 1.0 + bend]).unwrap();
     let h = std::f64::consts::FRAC_1_SQRT_2;
@@ -197,7 +198,8 @@ proptest! {
         assert_same(&a.volume, &b.volume)?;
     }
 
-    /// Patches of high degree, with poles, are swept like the round tools that they are: their normals are reduced on cells, and evaluated from derivatives.
+    /// Patches of high degree, with poles, are swept like the round tools that they are: their normals are reduced on
+    /// cells, and evaluated from derivatives.
     #[test]
     fn patches_of_no_special_form(poses in proptest::collection::vec(pose(), 2..3), ball in any::<bool>(), bend in 0.2..0.6) {
         let (wall, top) = (|from: f64| line([2.0, from], [2.0, 9.0]), line([2.0, 9.0], [0.0, 9.0]));
@@ -227,8 +229,8 @@ proptest! {
         assert_same(&a.volume, &b.volume)?;
     }
 
-    /// A block that turns about any axis while it moves: no sample in time is outside of the volume, and every place of the
-    /// volume is near one.
+    /// A block that turns about any axis while it moves: no sample in time is outside of the volume, and every place of
+    /// the volume is near one.
     #[test]
     fn a_block_in_full_orientation(
         tips in prop::array::uniform2(prop::array::uniform3(-3.0..3.0)),
@@ -284,7 +286,8 @@ proptest! {
         }
     }
 
-    /// A tool that is not symmetric is carried along by poses that only say its axis: turning all of them about an axis changes nothing else.
+    /// A tool that is not symmetric is carried along by poses that only say its axis: turning all of them about an axis
+    /// changes nothing else.
     #[test]
     fn carried_tools_do_not_turn_about_their_axis(poses in prop::collection::vec(pose(), 2..5)) {
         let path = Path::new(poses).unwrap();

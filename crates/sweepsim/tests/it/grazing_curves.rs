@@ -35,7 +35,8 @@ fn cushion() -> Tool {
     Tool::from_patches(vec![bicubic(at(1.0)), bicubic(at(-1.0))], 1e-9).expect("a tool")
 }
 
-/// A body of revolution made oval and sheared, as rational patches with poles: nothing is round. `pieces` of the meridian are lists of homogeneous `(ρ, ζ, w)`.
+/// A body of revolution made oval and sheared, as rational patches with poles: nothing is round. `pieces` of the
+/// meridian are lists of homogeneous `(ρ, ζ, w)`.
 pub fn oval(pieces: &[Vec<[f64; 3]>]) -> Tool {
     let h = std::f64::consts::FRAC_1_SQRT_2;
     let mut patches = Vec::new();
@@ -83,13 +84,15 @@ pub fn bud() -> Tool {
     ])
 }
 
-/// As flat in the middle of its end as a router bit of one B-spline surface: its height grows with the third power of the distance.
+/// As flat in the middle of its end as a router bit of one B-spline surface: its height grows with the third power of
+/// the distance.
 pub fn pad() -> Tool {
     let end = vec![[0.0, 0.0, 1.0], [0.7, 0.0, 1.0], [1.4, 0.0, 1.0], [2.0, 0.3, 1.0]];
     oval(&[end, straight([2.0, 0.3], [2.0, 7.0]), straight([2.0, 7.0], [0.0, 7.0])])
 }
 
-/// A bit as one bicubic B-spline surface that closes smoothly around its axis: not quite round, with ten patches about each pole, as flat there as a cubic is.
+/// A bit as one bicubic B-spline surface that closes smoothly around its axis: not quite round, with ten patches about
+/// each pole, as flat there as a cubic is.
 pub fn bit() -> Tool {
     const DISTINCT: usize = 10;
     const PROFILE: [[f64; 2]; 8] = [
@@ -169,7 +172,8 @@ proptest! {
         agree_cheaply(number, &carried(&tips, turn), &grid)?;
     }
 
-    /// Level moves, moves along the grid and plunges, of tools that stand or lean: many lines are in walls of the block. No line is over the pole of the bud.
+    /// Level moves, moves along the grid and plunges, of tools that stand or lean: many lines are in walls of the
+    /// block. No line is over the pole of the bud.
     #[test]
     fn moves_along_the_axes(number in 0..3usize, turn in turn(), stands in any::<bool>(), start in [-4..4, -4..4, -2..2],
         steps in prop::collection::vec((0..3usize, -4..5), 1..6)) {
@@ -201,7 +205,8 @@ proptest! {
         agree_cheaply(number, &carried(&tips, turn), &grid([25, 27]))?;
     }
 
-    /// Moves in the tangent plane of the bud's pole, or almost, whose tip passes over a line, or almost: the grazing curve passes through the pole.
+    /// Moves in the tangent plane of the bud's pole, or almost, whose tip passes over a line, or almost: the grazing
+    /// curve passes through the pole.
     #[test]
     fn poles_over_lines(turn in turn(), stands in any::<bool>(), heading in 0.0..6.3_f64, along in -3.0..3.0_f64, beside in 0.0..13.0_f64, slope in 0.0..13.0_f64, line in [0..29usize, 0..31usize], back in any::<bool>()) {
         let turn = if stands { [0.0; 3] } else { turn };
@@ -295,8 +300,8 @@ fn few_boxes_along_a_raster() {
     }
 }
 
-/// Level moves whose tip passes over lines, exactly or almost: the pole of the round end touches the envelope all the way there. All methods find the same, and the
-/// search is not at the mercy of the distance.
+/// Level moves whose tip passes over lines, exactly or almost: the pole of the round end touches the envelope all the
+/// way there. All methods find the same, and the search is not at the mercy of the distance.
 #[test]
 fn poles_that_pass_over_lines() {
     let tool = bud();
@@ -344,7 +349,8 @@ fn poles_that_pass_over_lines() {
     }
 }
 
-/// The flat end of a tool of patches that moves level is left to a displacement, however small: two components of its normals are 0 without any error.
+/// The flat end of a tool of patches that moves level is left to a displacement, however small: two components of its
+/// normals are 0 without any error.
 #[test]
 fn flat_ends_at_fine_tolerances() {
     let tool = bud();

@@ -1,4 +1,5 @@
-//! Consecutive moves in one direction, which `simulate` joins to one: the same dexels as from each move by itself, and sources that say which of them it was.
+//! Consecutive moves in one direction, which `simulate` joins to one: the same dexels as from each move by itself, and
+//! sources that say which of them it was.
 
 use super::translations::{TOLERANCE, UP, path, same, tools};
 use proptest::prelude::*;
@@ -20,7 +21,8 @@ fn cut(tool: &Tool, path: &Path, method: Method) -> Simulation {
     simulate(stock(), &[Cut::new(tool, path)], &options, &()).expect("a simulation")
 }
 
-/// The corners, with points of the straight ways between them: as many as `pieces` says, where it says so; those at rest twice.
+/// The corners, with points of the straight ways between them: as many as `pieces` says, where it says so; those at
+/// rest twice.
 fn divided(corners: &[[f64; 3]], pieces: &[usize], rests: bool) -> Vec<[f64; 3]> {
     let mut tips = vec![corners[0]];
     for (n, pair) in corners.windows(2).enumerate() {

@@ -1,4 +1,5 @@
-//! A tool whose patches join several to one, or with a different parametrisation, cuts the same as that tool without such joints.
+//! A tool whose patches join several to one, or with a different parametrisation, cuts the same as that tool without
+//! such joints.
 
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::Grid;
@@ -21,7 +22,8 @@ fn flat(corners: [[f64; 3]; 4]) -> Patch {
     patch([1, 1], &corners, &[1.0; 4])
 }
 
-/// The box from (-1, -1, 0) to (1, 1, 4), its bottom between the values of `x`, its side at y = −1 at the pace that `middle` gives.
+/// The box from (-1, -1, 0) to (1, 1, 4), its bottom between the values of `x`, its side at y = −1 at the pace that
+/// `middle` gives.
 fn block(bottom: &[f64], middle: f64) -> Vec<Patch> {
     let mut patches = vec![
         flat([[-1.0, -1.0, 4.0], [1.0, -1.0, 4.0], [-1.0, 1.0, 4.0], [1.0, 1.0, 4.0]]),
@@ -130,7 +132,8 @@ fn thirds_of_a_wall_join_quarters_of_an_end() {
     );
 }
 
-/// A narrow block under a wide one; what of the wide one's bottom is free is cut at the values of `x` and `y`: in rows, each of its own.
+/// A narrow block under a wide one; what of the wide one's bottom is free is cut at the values of `x` and `y`: in rows,
+/// each of its own.
 fn step(rows: &[([f64; 2], &[f64])]) -> Vec<Patch> {
     let mut patches = Vec::new();
     let mut walls = |half: f64, low: f64, high: f64| {

@@ -110,7 +110,8 @@ fn loops_enclose_what_lines_find() {
         );
         assert!(loops.closed.iter().all(|line| line.first() == line.last()));
         let (own, expected) = (area(&loops.closed, &plane), probed(&cuts, at, [-30.0, 30.0]));
-        // Outer loops run counter-clockwise: the area is positive. Steps of the lines are 0.015 wide, and walls are steep.
+        // Outer loops run counter-clockwise: the area is positive. Steps of the lines are 0.015 wide, and walls are
+        // steep.
         assert!(
             (own - expected).abs() < 2e-3 * expected,
             "case {number}: {own} for {expected}"

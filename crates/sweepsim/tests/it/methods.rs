@@ -39,7 +39,8 @@ fn steepness(end: &End) -> f64 {
     1.0 / (f64::from(end.normal[2].abs()) - 1e-4).max(1e-5)
 }
 
-/// Same numbers of intervals, ends within what two lines moved differently may differ by: a hundredth of it, and more along walls.
+/// Same numbers of intervals, ends within what two lines moved differently may differ by: a hundredth of it, and more
+/// along walls.
 fn assert_same(a: &Dexels, b: &Dexels, tolerance: f64) {
     for index in 0..a.grid().len() {
         let (p, q) = (a.at(index), b.at(index));
@@ -74,8 +75,8 @@ proptest! {
         for method in [Method::Lines, Method::Planes, Method::Surface] {
             let other = sweep(tool, &path, &grid, &Options::new(1e-6).method(method), &()).unwrap();
             prop_assert!(other.statistics.unresolved.is_empty(), "{method}");
-            // The same roots of the same systems. The last step of Newton's method is at most 5e-6 of the parameters' ranges, whose
-            // second derivatives are some 100: 1e-9 in space, and more in z along a wall.
+            // The same roots of the same systems. The last step of Newton's method is at most 5e-6 of the parameters'
+            // ranges, whose second derivatives are some 100: 1e-9 in space, and more in z along a wall.
             assert_same(&charts.volume, &other.volume, 1e-7);
         }
     }

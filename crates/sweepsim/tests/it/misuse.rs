@@ -1,4 +1,5 @@
-//! Input at the limits of what numbers can hold: an error, or a result that says what is uncertain; never a panic, never a silent loss.
+//! Input at the limits of what numbers can hold: an error, or a result that says what is uncertain; never a panic,
+//! never a silent loss.
 
 use proptest::prelude::*;
 use sweepsim::motion::Patch;

@@ -1,7 +1,8 @@
-//! What almost degenerate input costs: in boxes of the subdivision, which no clock disturbs. By each method it may cost three times its generic
-//! neighbour, whatever the distance from degeneracy, with the exceptions listed here.
+//! What almost degenerate input costs: in boxes of the subdivision, which no clock disturbs. By each method it may cost
+//! three times its generic neighbour, whatever the distance from degeneracy, with the exceptions listed here.
 //!
-//! `cargo test -p sweepsim --release --test it near_degenerate -- --include-ignored --nocapture` prints the table of the docs.
+//! `cargo test -p sweepsim --release --test it near_degenerate -- --include-ignored --nocapture` prints the table of
+//! the docs.
 
 use crate::far_and_fine::difference;
 use sweepsim::{Method, Options, Statistics, sweep};
@@ -54,8 +55,8 @@ pub fn turning_about_its_axis(tips: [[f64; 3]; 2], tilt: f64) -> Path {
     Path::with_moves(poses, vec![way]).expect("a path")
 }
 
-/// A turn about a line along the dexels, `d` from the nearest one, while the tip moves along it by `rise`; the axis leans by `tilt` out of the plane
-/// across the line.
+/// A turn about a line along the dexels, `d` from the nearest one, while the tip moves along it by `rise`; the axis
+/// leans by `tilt` out of the plane across the line.
 pub fn about_a_line(d: f64, rise: f64, tilt: f64) -> (Path, Grid) {
     let poses = [0.2, -0.2].map(|side| pose([0.0, 0.0, rise * side], [side, 1.0, tilt]));
     (through(poses.into(), Law::Slerp), around([0.8 * d, 0.6 * d]))
@@ -87,7 +88,8 @@ fn across_axis(axis: [f64; 3]) -> [[f64; 3]; 2] {
     [u, [y * u[2] - z * u[1], z * u[0] - x * u[2], x * u[1] - y * u[0]]]
 }
 
-/// An arc of 100° about the origin and a direction, of this radius, rising by `rise`, of a tool with an axis of its own.
+/// An arc of 100° about the origin and a direction, of this radius, rising by `rise`, of a tool with an axis of its
+/// own.
 fn across(normal: [f64; 3], axis: [f64; 3], radius: f64, rise: f64) -> Path {
     let [u, v] = across_axis(normal);
     let at = |angle: f64, rise: f64| {
@@ -248,13 +250,15 @@ pub fn cost(method: Method, tool: &Tool, (path, grid): &(Path, Grid)) -> Statist
         .statistics
 }
 
-/// The work of a sweep, in boxes. By default, a line in closed form takes as long as a box that holds only one (1.3 µs), and counts as one.
+/// The work of a sweep, in boxes. By default, a line in closed form takes as long as a box that holds only one (1.3
+/// µs), and counts as one.
 pub fn work(method: Method, statistics: &Statistics, grid: &Grid) -> f64 {
     let lines = if method == Method::Mixed { grid.len() } else { 0 };
     statistics.boxes as f64 + lines as f64
 }
 
-/// Prints how many times as much work as its generic neighbour each input of a family takes, and tells whether all are cheap.
+/// Prints how many times as much work as its generic neighbour each input of a family takes, and tells whether all are
+/// cheap.
 pub fn is_cheap(
     method: Method,
     (what, family): Family,
@@ -266,7 +270,8 @@ pub fn is_cheap(
     let ratio = |d: &f64| {
         let input = family(*d);
         let found = cost(method, tool, &input);
-        // In closed form, a line may be too close to an end of a curve: it is displaced, and counts as it would otherwise.
+        // In closed form, a line may be too close to an end of a curve: it is displaced, and counts as it would
+        // otherwise.
         let again = if method == Method::Mixed { 0 } else { found.repaired };
         let trouble = again + found.unresolved.len();
         (work(method, &found, &input.1) / generic, trouble)

@@ -1,4 +1,5 @@
-//! What almost degenerate input costs with free-form tools, whose normals vanish at poles but for one component: as in [`near_degenerate`](crate::near_degenerate).
+//! What almost degenerate input costs with free-form tools, whose normals vanish at poles but for one component: as in
+//! [`near_degenerate`](crate::near_degenerate).
 //!
 //! `cargo test -p sweepsim --release --test it near_poles -- --include-ignored --nocapture` prints the table.
 
@@ -12,7 +13,8 @@ use sweepsim_dexel::Grid;
 use sweepsim_motion::{Law, Path, SplineMotion, Turning};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
-/// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising by `d` over a row.
+/// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising
+/// by `d` over a row.
 pub fn over_poles() -> Vec<Family> {
     fn tip_over(tips: [[f64; 3]; 2]) -> (Path, Grid) {
         (
@@ -139,7 +141,8 @@ fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution, and with poles over lines.
+/// Free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution,
+/// and with poles over lines.
 fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
     let mut wrong = Vec::new();
     let tools = [
@@ -158,7 +161,8 @@ fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What costs more, as the docs say: the tool turns about a line within 2e-9 mm of a dexel, or a pole that is as flat as a cubic slides straight along a line.
+/// What costs more, as the docs say: the tool turns about a line within 2e-9 mm of a dexel, or a pole that is as flat
+/// as a cubic slides straight along a line.
 fn is_dear(method: Method, what: &str, name: &str) -> bool {
     let slides: &[&str] = match method {
         Method::General => &["tilt of a level move", "line from the way of a pole", "rise of a pole"],

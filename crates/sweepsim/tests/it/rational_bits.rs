@@ -1,4 +1,5 @@
-//! Tools of rational B-spline surfaces, whose homogeneous coordinates are rounded products: equal ones are equal up to rounding only.
+//! Tools of rational B-spline surfaces, whose homogeneous coordinates are rounded products: equal ones are equal up to
+//! rounding only.
 
 use crate::far_and_fine::difference;
 use crate::freeform::{FACES, block};
@@ -74,7 +75,8 @@ fn surface(around: KnotVector, points: Vec<f64>, weights: &[f64]) -> Tool {
     Tool::from_surfaces(&[surface], 1e-9).expect("a tool")
 }
 
-/// A block like that of `freeform`, turned about its axis, whose corners have the weights of a list, if there is one: no face is moved by them.
+/// A block like that of `freeform`, turned about its axis, whose corners have the weights of a list, if there is one:
+/// no face is moved by them.
 fn turned_block([min, max]: [[f64; 3]; 2], angle: f64, weights: Option<[f64; 8]>) -> Tool {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
     let corner = |k: usize| -> [f64; 3] {
@@ -113,7 +115,8 @@ fn as_cheap(tools: &[Tool; 2], path: &Path, grid: &Grid, options: &Options, time
     assert!(apart < 10.0 * options.tolerance, "{what}: {apart:e}");
 }
 
-/// Faces that slide along themselves, at places whose products with the weights are rounded, cost what those of polynomials do; plunges by default had taken some hundred times as long.
+/// Faces that slide along themselves, at places whose products with the weights are rounded, cost what those of
+/// polynomials do; plunges by default had taken some hundred times as long.
 #[test]
 fn weights_of_flat_faces_cost_nothing() {
     let [min, max] = BLOCK;
@@ -138,7 +141,8 @@ fn weights_of_flat_faces_cost_nothing() {
     }
 }
 
-/// So do faces that are not across the tool's own axes, by all methods; at 1e-8, charts and the general method had solved 88 to 186 of the 399 lines again, which took up to a thousand times as long.
+/// So do faces that are not across the tool's own axes, by all methods; at 1e-8, charts and the general method had
+/// solved 88 to 186 of the 399 lines again, which took up to a thousand times as long.
 #[test]
 fn weights_of_turned_faces_cost_nothing() {
     const ANGLE: f64 = 0.5;

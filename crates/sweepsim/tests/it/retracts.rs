@@ -36,15 +36,16 @@ fn retracts_open_no_line_beside_the_tool() {
     }
 }
 
-/// Along a tilted axis the wall slides along itself, and the displacement of tips alone decides where `g` vanishes on it: at a ruling, all of which passes beside the lines next to it at
-/// all times. They cost no more than others.
+/// Along a tilted axis the wall slides along itself, and the displacement of tips alone decides where `g` vanishes on
+/// it: at a ruling, all of which passes beside the lines next to it at all times. They cost no more than others.
 #[test]
 fn lines_beside_a_ruling_that_slides_along_itself() {
     let axis = [0.3, 0.2, 1.0];
     let tip = [15.5, 37.0 / 3.0 - 1.0 / 6.0, -19.506];
     let way = 19.0 / Vector3::from(axis).norm();
     let moves = path(&[tip, [0, 1, 2].map(|k| tip[k] + way * axis[k])], axis);
-    // A line within 1e-6 of the ruling, and the direction across it. Lines within 2e-5 may be solved again up to five times, for rounding decides what they meet.
+    // A line within 1e-6 of the ruling, and the direction across it. Lines within 2e-5 may be solved again up to five
+    // times, for rounding decides what they meet.
     let (near, across) = ([18.512_170_6, 17.758_181_7], [-0.5547, 0.832_05]);
     let drill = Apt {
         d: 6.0,
@@ -213,7 +214,8 @@ impl Retract {
         METHODS.into_iter().map(of).collect()
     }
 
-    /// The radius of what is cut at a height above the first tip, as long as the tool's top is above it, and how accurate that is.
+    /// The radius of what is cut at a height above the first tip, as long as the tool's top is above it, and how
+    /// accurate that is.
     fn width(&self, along: f64) -> (f64, f64) {
         let (name, tool, _) = &TOOLS[self.number];
         let corner: f64 = match *name {
@@ -264,7 +266,8 @@ impl Retract {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
-    /// Lines within roundings of the ruling on which the displacement of tips lets `g` vanish: each is settled, by all methods, and ends where the tool has been.
+    /// Lines within roundings of the ruling on which the displacement of tips lets `g` vanish: each is settled, by all
+    /// methods, and ends where the tool has been.
     #[test]
     fn lines_on_a_ruling_that_slides_along_itself(retract in retract(), lines in prop::collection::vec(beside(), 6)) {
         let retract = Retract { leaves: None, turns: None, ..retract };

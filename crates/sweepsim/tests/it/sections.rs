@@ -19,8 +19,8 @@ fn vector(reach: f64) -> impl Strategy<Value = [f64; 3]> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
-    /// Where a line of the plane enters or leaves the volume, there is a curve of the section; where an outer curve crosses a line, the
-    /// volume begins or ends.
+    /// Where a line of the plane enters or leaves the volume, there is a curve of the section; where an outer curve
+    /// crosses a line, the volume begins or ends.
     #[test]
     fn outlines_cross_lines_where_intervals_end(
         tool in 0..3usize,

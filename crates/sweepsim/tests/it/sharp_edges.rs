@@ -22,7 +22,8 @@ fn noise(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Two dented blocks side by side: ten bicubic patches, none of them plane, whose edges bend in all directions. Those between both blocks are convex in one place and concave in another.
+/// Two dented blocks side by side: ten bicubic patches, none of them plane, whose edges bend in all directions. Those
+/// between both blocks are convex in one place and concave in another.
 fn pebble(seed: u64) -> Tool {
     let mut noise = noise(seed);
     let mut control = [[[[0.0; 3]; 2]; 4]; 7];
@@ -158,8 +159,8 @@ proptest! {
         agree_cheaply(number, &tips, turn, &grid([25, 27]))?;
     }
 
-    /// Lines under a point of an edge or under its end at some time, exactly or almost, where the tip goes any way, along the edge, or along one of its faces, or almost:
-    /// that is where `p` turns, and where signs of `g` change.
+    /// Lines under a point of an edge or under its end at some time, exactly or almost, where the tip goes any way,
+    /// along the edge, or along one of its faces, or almost: that is where `p` turns, and where signs of `g` change.
     #[test]
     fn lines_under_edges(number in 0..10_000_u64, turn in turn(), stands in any::<bool>(), which in any::<prop::sample::Index>(), r in 0.0..1.0_f64, end in 0..4u8, way in 0..5u8,
         free in [-1.0..1.0, -1.0..1.0, -1.0..1.0], beside in small(), slope in small(), before in 0.0..3.0_f64, line in [0..29usize, 0..31usize]) {

@@ -82,7 +82,8 @@ fn corners_that_bound_the_volume_lie_where_dexels_end() {
     );
     let (mut outer, mut inner) = (0, 0);
     for surface in &surfaces.surfaces {
-        // Along walls an end of a line says little, and edges may be the volume's outline seen from above, where lines only touch it.
+        // Along walls an end of a line says little, and edges may be the volume's outline seen from above, where lines
+        // only touch it.
         if matches!(surface.piece, BoundaryPiece::Edge(_)) {
             continue;
         }
@@ -105,7 +106,8 @@ fn corners_that_bound_the_volume_lie_where_dexels_end() {
             if **is_outer {
                 let mut nearest = off(&intervals);
                 if intervals.is_empty() {
-                    // On the outline of a flat face, displaced lines may miss the volume; of those a little beside them some do not.
+                    // On the outline of a flat face, displaced lines may miss the volume; of those a little beside them
+                    // some do not.
                     let [x, y] = place(point);
                     let beside = [[5e-6, 0.0], [-5e-6, 0.0], [0.0, 5e-6], [0.0, -5e-6]];
                     let beside = probed(beside.map(|[dx, dy]| [x + dx, y + dy]).into());

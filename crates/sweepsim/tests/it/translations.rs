@@ -1,4 +1,5 @@
-//! Moves without rotation in closed form, against charts: the same crossings from other systems, bounds and certificates.
+//! Moves without rotation in closed form, against charts: the same crossings from other systems, bounds and
+//! certificates.
 
 pub use crate::displaced::{agree, same};
 use proptest::prelude::*;
@@ -231,7 +232,8 @@ proptest! {
     }
 }
 
-/// 3+2 with tools of lines and balls: joints and ends of the path are in closed form, too, whichever way the tool leans.
+/// 3+2 with tools of lines and balls: joints and ends of the path are in closed form, too, whichever way the tool
+/// leans.
 #[test]
 fn no_box_of_tilted_tools() {
     let tips = [
@@ -294,7 +296,8 @@ fn fewer_boxes_of_tilted_tori() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
-    /// Tori on moves across their axis, or almost: there the grazing curve goes half around the circle of centres within an angle as small as the slope.
+    /// Tori on moves across their axis, or almost: there the grazing curve goes half around the circle of centres
+    /// within an angle as small as the slope.
     #[test]
     fn across_the_axis(
         tool in prop::sample::select(WITH_TORI.to_vec()), axis in lean(), start in tip(),

@@ -40,7 +40,8 @@ fn agree_along(number: usize, path: &Path, grid: &Grid) -> Result<[Statistics; 2
     Ok([own, other])
 }
 
-/// Along a path of short moves, hardly a box is needed for what is solved line by line: what remains are edges near the height that the tool turns about.
+/// Along a path of short moves, hardly a box is needed for what is solved line by line: what remains are edges near the
+/// height that the tool turns about.
 #[test]
 fn few_boxes() {
     let pose = |k: u32| {
@@ -91,7 +92,8 @@ proptest! {
         agree_along(number, &path, &grid(25))?;
     }
 
-    /// Retracts along the own axis, level tools, turns and travels that almost vanish, on both sides of a move that turns.
+    /// Retracts along the own axis, level tools, turns and travels that almost vanish, on both sides of a move that
+    /// turns.
     #[test]
     fn almost_without_a_turn(number in prop::sample::select(vec![0_usize, 1, 9]), first in axis(), turn in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], exponents in [-12..0i32, -12..1i32],
         step in tip(3.0), along in any::<bool>(), level in any::<bool>()) {
@@ -115,7 +117,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
-    /// An axis that passes the vertical, exactly or nearly, on the way or at an end, or hardly leaves it; turned over, too.
+    /// An axis that passes the vertical, exactly or nearly, on the way or at an end, or hardly leaves it; turned over,
+    /// too.
     #[test]
     fn almost_upright(number in 0..13usize, from in tip(5.0), step in tip(5.0), lean in [-1.0..1.0_f64, -1.0..1.0], aside in [-1.0..1.0_f64, -1.0..1.0],
         exponents in [-5..1i32, -9..0i32, -2..1i32], share in prop::sample::select(vec![-1.0_f64, -0.3, 0.0, 0.5]), exact in any::<bool>(), over in any::<bool>()) {
@@ -134,7 +137,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases().div_ceil(4), ..ProptestConfig::default() })]
 
-    /// Many lines beside each other, each solved from the last one's zero: single moves, and pieces of a few of their lines' distances.
+    /// Many lines beside each other, each solved from the last one's zero: single moves, and pieces of a few of their
+    /// lines' distances.
     #[test]
     fn many_lines(number in 0..13usize, from in tip(6.0), first in axis(), step in tip(8.0), turn in [-0.6..0.6_f64, -0.6..0.6], small in any::<bool>()) {
         let share = if small { 0.05 } else { 1.0 };

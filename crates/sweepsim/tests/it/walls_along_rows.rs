@@ -1,4 +1,5 @@
-//! Walls exactly along rows, columns and diagonals of lines, as programs and grids of round numbers have them, at every pose of the period after which the displacement of tips starts anew.
+//! Walls exactly along rows, columns and diagonals of lines, as programs and grids of round numbers have them, at every
+//! pose of the period after which the displacement of tips starts anew.
 
 use crate::displaced::same;
 use crate::translations::{TOLERANCE, UP, path};

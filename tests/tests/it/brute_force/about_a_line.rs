@@ -1,4 +1,5 @@
-//! A level tool whose tip goes around a dexel line, exactly or almost: the line keeps grazing the tool at the same height.
+//! A level tool whose tip goes around a dexel line, exactly or almost: the line keeps grazing the tool at the same
+//! height.
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
 use crate::brute_force::named_motions::pose;

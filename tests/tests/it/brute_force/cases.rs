@@ -29,7 +29,8 @@ pub struct Case {
 pub enum Window {
     /// Anywhere: `shift` of its middle and half its size, both in radii of the tool; lines a side.
     Free { shift: [f64; 2], half: f64, lines: usize },
-    /// Lines through the tip's axis and tangent to the tool's wall: a spacing of `1/parts` radii, `reach` lines to each side.
+    /// Lines through the tip's axis and tangent to the tool's wall: a spacing of `1/parts` radii, `reach` lines to each
+    /// side.
     Aligned { parts: usize, reach: usize },
 }
 

@@ -1,5 +1,5 @@
-//! Named sweeps: every tool with every kind of motion, generic, degenerate, almost degenerate and self-intersecting. Both methods are
-//! judged by brute force on all of them, and must agree with each other.
+//! Named sweeps: every tool with every kind of motion, generic, degenerate, almost degenerate and self-intersecting.
+//! Both methods are judged by brute force on all of them, and must agree with each other.
 
 use crate::brute_force::cases::{Case, Cutter, Window};
 use crate::brute_force::judge::{TOLERANCE, Tally, judge, same_volume, swept};
@@ -254,8 +254,9 @@ fn all_methods_on_all_named_sweeps() {
     assert!(covered > 10 * cases.len(), "the grids must meet the tools: {covered}");
 }
 
-/// A cutter with three fins, as for T-slots. Where a line is in its body at one time and meets two fins at another, the sheets of one move's
-/// envelope overlap as `start start end start end end`: one interval, that the paper's Algorithm 2 cuts in two.
+/// A cutter with three fins, as for T-slots. Where a line is in its body at one time and meets two fins at another, the
+/// sheets of one move's envelope overlap as `start start end start end end`: one interval, that the paper's Algorithm 2
+/// cuts in two.
 #[test]
 fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
     let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
@@ -327,14 +328,16 @@ fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
     }
 }
 
-/// On the named sweeps, whose moves do not overlap themselves in this way, it is right once its last interval is restored.
+/// On the named sweeps, whose moves do not overlap themselves in this way, it is right once its last interval is
+/// restored.
 #[test]
 fn the_papers_boundary_operator_is_right_where_moves_do_not_overlap_themselves() {
     let differs = |(name, case): &(String, Case)| -> Option<String> {
         let grid = case.grid();
         let path = Path::new(case.poses.clone()).expect(name);
         let volume = |boundary| {
-            // Closed forms solve a line in a wall again elsewhere, on the other side perhaps; here both operators must see the same line.
+            // Closed forms solve a line in a wall again elsewhere, on the other side perhaps; here both operators must
+            // see the same line.
             let options = Options::new(TOLERANCE).boundary(boundary).method(Method::General);
             sweep(&case.cutter.tool, &path, &grid, &options, &())
                 .expect(name)

@@ -1,5 +1,5 @@
-//! The everyday moves that are degenerate for an envelope: a whole patch grazes, the volume closes at the joint of two faces, the tool
-//! rests, or almost does. This includes grids with lines in the walls and through the axis.
+//! The everyday moves that are degenerate for an envelope: a whole patch grazes, the volume closes at the joint of two
+//! faces, the tool rests, or almost does. This includes grids with lines in the walls and through the axis.
 
 use crate::brute_force::cases::{Case, any_tool, any_window, axis, flat, pose, tip, turned};
 use crate::brute_force::judge::{Tally, for_all, judge};

@@ -41,7 +41,8 @@ fn five_axis_moves() {
     assert_clean(&for_all(24, cases, |case| judge(case, Method::Mixed)));
 }
 
-/// A line through the hollow of a tilted tool meets pilot, air and body: a gap, as long as the move is too small to fill it.
+/// A line through the hollow of a tilted tool meets pilot, air and body: a gap, as long as the move is too small to
+/// fill it.
 #[test]
 fn small_five_axis_moves_of_a_concave_tool() {
     let cases = (

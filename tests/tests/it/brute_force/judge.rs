@@ -260,7 +260,8 @@ pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Resu
     same_sweeps(profile, &Motion::new(&case.poses), grid, one, other)
 }
 
-/// Gaps shorter than the tolerance may be extra: where a line is hardly beside a wall, an exit and an entry at a joint that are one are as far apart along it.
+/// Gaps shorter than the tolerance may be extra: where a line is hardly beside a wall, an exit and an entry at a joint
+/// that are one are as far apart along it.
 fn without_short_gaps(intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut joined: Vec<[f64; 2]> = Vec::with_capacity(intervals.len());
     for next in intervals {

@@ -62,8 +62,8 @@ fn a_path_backwards_sweeps_the_same() {
     assert_same(&tally);
 }
 
-/// A part of a translation is a translation, and a part of a turn in place is a turn in place (the two together are not: where a
-/// rational arc is cut, its halves pass through the same axes at other times).
+/// A part of a translation is a translation, and a part of a turn in place is a turn in place (the two together are
+/// not: where a rational arc is cut, its halves pass through the same axes at other times).
 #[test]
 fn a_move_cut_in_two_sweeps_the_same() {
     let moves = prop_oneof![
@@ -84,8 +84,8 @@ fn a_move_cut_in_two_sweeps_the_same() {
     assert_same(&tally);
 }
 
-/// Everything turned by a right angle about z: dexel `(i, j)` becomes `(n − 1 − j, i)`. Turned poses are exact, the turned grid is
-/// mirrored in 0 exactly as well, so that only the solver's own choices differ.
+/// Everything turned by a right angle about z: dexel `(i, j)` becomes `(n − 1 − j, i)`. Turned poses are exact, the
+/// turned grid is mirrored in 0 exactly as well, so that only the solver's own choices differ.
 #[test]
 fn a_right_angle_about_z_turns_the_volume() {
     let tally = for_all(8, five_axis(), |case| {
@@ -134,7 +134,8 @@ fn a_path_is_the_union_of_its_moves() {
     assert_same(&tally);
 }
 
-/// Turning the whole job by any angle about z turns the volume: each turned sweep is judged on its own, on the same grid of lines.
+/// Turning the whole job by any angle about z turns the volume: each turned sweep is judged on its own, on the same
+/// grid of lines.
 #[test]
 fn any_turn_about_z_is_as_good() {
     let cases = (five_axis(), 0.0..TAU).prop_map(|(mut case, angle)| {

@@ -1,5 +1,5 @@
-//! Named sweeps along the motions beyond SLERP: constant speed, rotary axes, arcs and helices of the tip, user-defined motions.
-//! All are judged by brute force, which evaluates them as sines and cosines of time.
+//! Named sweeps along the motions beyond SLERP: constant speed, rotary axes, arcs and helices of the tip, user-defined
+//! motions. All are judged by brute force, which evaluates them as sines and cosines of time.
 
 use crate::brute_force::corpus::lean;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

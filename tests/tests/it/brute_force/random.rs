@@ -1,5 +1,5 @@
-//! Random tools, outlines of splines among them, along random motions of every kind: all methods agree, and transformations that must not
-//! change the volume do not.
+//! Random tools, outlines of splines among them, along random motions of every kind: all methods agree, and
+//! transformations that must not change the volume do not.
 //!
 //! `cargo xtask brute-force random` draws many more.
 

@@ -236,9 +236,10 @@ fn volumes_of_simple_sweeps_are_those_of_the_closed_forms() {
                 .expect("a sweep")
                 .volume
                 .volume();
-            // The height over the convex shadow is concave, at most the length of the longest chord. The midpoint rule errs in
-            // the cells that the outline crosses, at most 2 P/a + 4 of them, by at most the height each (half of it on either side); inside, concavity
-            // makes it too large by less than that of a ring of cells once more.
+            // The height over the convex shadow is concave, at most the length of the longest chord. The midpoint rule
+            // errs in the cells that the outline crosses, at most 2 P/a + 4 of them, by at most the height each (half
+            // of it on either side); inside, concavity makes it too large by less than that of a ring of cells once
+            // more.
             let [a, b] = grid.spacing();
             let outline = 2.0 * way.xy().norm() + 2.0 * PI * (radius + length * axis.xy().norm());
             let error = (2.0 * outline / a.min(b) + 4.0) * a * b * length;
@@ -249,7 +250,8 @@ fn volumes_of_simple_sweeps_are_those_of_the_closed_forms() {
     }
 }
 
-/// A tool of revolution that goes around its own centre line, or turns about its tip, leaves a solid of revolution: known by its radius.
+/// A tool of revolution that goes around its own centre line, or turns about its tip, leaves a solid of revolution:
+/// known by its radius.
 #[test]
 fn a_level_circle_leaves_a_disk() {
     let (radius, round) = (2.0, 1.3);

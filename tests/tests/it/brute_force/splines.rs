@@ -1,4 +1,5 @@
-//! Motions along B-splines: in the solver's form, and for brute force, which evaluates the splines by de Boor's algorithm.
+//! Motions along B-splines: in the solver's form, and for brute force, which evaluates the splines by de Boor's
+//! algorithm.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;

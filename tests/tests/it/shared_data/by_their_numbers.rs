@@ -1,4 +1,5 @@
-//! Real programs against their own numbers, read here word by word: the end of every block, and where the tool points there.
+//! Real programs against their own numbers, read here word by word: the end of every block, and where the tool points
+//! there.
 
 use super::folder;
 use std::collections::BTreeMap;
@@ -8,7 +9,8 @@ use sweepsim_nc::{Program, ReadOptions, read_file};
 /// The end of a block: X, Y, Z in millimetres and A, B, C.
 type End = ([f64; 3], [f64; 3]);
 
-/// The ends of the blocks of a program that has no offsets of tools, no cycles, variables or subprograms, by line. `None`: it has some.
+/// The ends of the blocks of a program that has no offsets of tools, no cycles, variables or subprograms, by line.
+/// `None`: it has some.
 fn ends(text: &str) -> Option<BTreeMap<usize, End>> {
     let mut found = BTreeMap::new();
     let (mut at, mut absolute, mut unit, mut moving) = ([None::<f64>; 3], true, 1.0, false);
@@ -97,7 +99,8 @@ fn last_by_line(program: &Program) -> BTreeMap<usize, Pose> {
     program.poses.iter().map(|pose| (pose.line, pose.pose)).collect()
 }
 
-/// Where the tool points in the part of LinuxCNC's rotary tables, whose positive angles turn the part as the letters say, with A or B below C.
+/// Where the tool points in the part of LinuxCNC's rotary tables, whose positive angles turn the part as the letters
+/// say, with A or B below C.
 fn axis([a, b, c]: [f64; 3]) -> [f64; 3] {
     let [a, b, c] = [a, b, c].map(f64::to_radians);
     let tilt = a + b;

@@ -1,7 +1,8 @@
 //! LinuxCNC's own tests of its interpreter: the canonical commands that it expects.
 //!
-//! Compared are moves, dwells, length offsets and the texts of `(DEBUG,…)` and `(PRINT,…)`, with the last decimal printed. Not compared is
-//! what has no geometry: comments, the spindle, coolant, overrides, resets, the tool table, and offsets, which the moves after them show.
+//! Compared are moves, dwells, length offsets and the texts of `(DEBUG,…)` and `(PRINT,…)`, with the last decimal
+//! printed. Not compared is what has no geometry: comments, the spindle, coolant, overrides, resets, the tool table,
+//! and offsets, which the moves after them show.
 
 use std::path::{Path, PathBuf};
 

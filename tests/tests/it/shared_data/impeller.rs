@@ -1,8 +1,8 @@
 //! Real 5-axis programs, which nobody here wrote.
 //!
-//! The impeller of LinuxCNC's rotary-table simulator has seven blades, cut by passes that are turned copies of each other. So turning the whole
-//! job by a seventh of a turn must not change what is removed. The turned job has other axes, other lines, and other degenerate
-//! positions: nothing in the solver knows of the symmetry.
+//! The impeller of LinuxCNC's rotary-table simulator has seven blades, cut by passes that are turned copies of each
+//! other. So turning the whole job by a seventh of a turn must not change what is removed. The turned job has other
+//! axes, other lines, and other degenerate positions: nothing in the solver knows of the symmetry.
 
 use super::folder;
 use nalgebra::{Rotation3, Vector3};
@@ -16,8 +16,8 @@ use sweepsim_tests::oracle::{Depth, Motion, Outline, Sampling, Verdict, compare,
 const STOCK_RADIUS: f64 = 40.0;
 const STOCK_HEIGHTS: [f64; 2] = [-3.0, 40.0];
 
-/// The poses of `5axis/linuxcnc/impeller-7bl-xyzac.ngc`: after `M428` X Y Z is the tip in the part's frame in mm, and the axis is
-/// `(sin C sin A, cos C sin A, cos A)`.
+/// The poses of `5axis/linuxcnc/impeller-7bl-xyzac.ngc`: after `M428` X Y Z is the tip in the part's frame in mm, and
+/// the axis is `(sin C sin A, cos C sin A, cos A)`.
 fn impeller() -> Vec<Pose> {
     let file = folder().join("5axis/linuxcnc/impeller-7bl-xyzac.ngc");
     let text = std::fs::read_to_string(&file).expect("the program is there");
@@ -83,8 +83,9 @@ fn swept(poses: &[Pose], grid: &Grid) -> Sweep {
 
 /// The volume removed from a cylinder, and the standard error of that sum as an estimate of the integral.
 ///
-/// A dexel stands for its cell. Where the removed length varies by `d` between neighbouring dexels it varies about as much within the
-/// cell, and taking one place in it for the mean errs like a uniform distribution of width `d`: by `d²/12` in the square.
+/// A dexel stands for its cell. Where the removed length varies by `d` between neighbouring dexels it varies about as
+/// much within the cell, and taking one place in it for the mean errs like a uniform distribution of width `d`: by
+/// `d²/12` in the square.
 fn removed(sweep: &Sweep, grid: &Grid) -> (f64, f64) {
     let stock = Stock::Cylinder {
         base: [0.0, 0.0, STOCK_HEIGHTS[0]],

@@ -20,8 +20,8 @@ fn area(soup: &TriangleSoup) -> f64 {
     soup.triangles.iter().map(of).sum()
 }
 
-/// The lines of a grid are the midpoint rule. It errs in cells that a wall crosses, each by at most its area times the wall's
-/// height there: in all by the area of the surface times the diagonal of a cell.
+/// The lines of a grid are the midpoint rule. It errs in cells that a wall crosses, each by at most its area times the
+/// wall's height there: in all by the area of the surface times the diagonal of a cell.
 #[test]
 #[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn volumes_of_dexels_become_those_of_the_mesh() {

@@ -1,4 +1,5 @@
-//! Files that nobody here wrote: `../shared/data` beside the project. Where it is absent, these tests are listed as ignored.
+//! Files that nobody here wrote: `../shared/data` beside the project. Where it is absent, these tests are listed as
+//! ignored.
 
 mod by_their_numbers;
 mod cl_files;

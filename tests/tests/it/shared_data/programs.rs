@@ -186,8 +186,9 @@ fn every_program_is_read_or_says_why_not() {
     assert_eq!(read, 69);
 }
 
-/// What is known of the G-code programs: poses, sections, rapids, events, and the corners of the box that the tip stays in, in mm. The
-/// corners were checked against the words in the files; poses depend on the chords of arcs, which are within 0.01 mm.
+/// What is known of the G-code programs: poses, sections, rapids, events, and the corners of the box that the tip stays
+/// in, in mm. The corners were checked against the words in the files; poses depend on the chords of arcs, which are
+/// within 0.01 mm.
 #[test]
 #[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn what_is_known_of_programs() {

@@ -1,4 +1,5 @@
-//! Programs of a Siemens 840D, made by a CAM system for a machine whose B and C axes carry the part (doi 10.5281/zenodo.15735480).
+//! Programs of a Siemens 840D, made by a CAM system for a machine whose B and C axes carry the part (doi
+//! 10.5281/zenodo.15735480).
 
 use super::folder;
 use sweepsim_motion::Course;
@@ -118,11 +119,13 @@ fn poses_by_hand() {
     let pose = at(&program, 1036).pose;
     near(pose.tip(), [-1.0, -15.001, -31.0]);
     near(pose.axis(), [1.0, 0.0, 0.0]);
-    // B90 C90, AROT X-90, AROT Z90: Rx(−90) Rz(90) (x, y, z) = (−y, z, −x); N16030, at X12 Y46.001 Z52. The tool points along +Y.
+    // B90 C90, AROT X-90, AROT Z90: Rx(−90) Rz(90) (x, y, z) = (−y, z, −x); N16030, at X12 Y46.001 Z52. The tool points
+    // along +Y.
     let pose = at(&program, 1604).pose;
     near(pose.tip(), [-46.001, 52.0, -12.0]);
     near(pose.axis(), [0.0, 1.0, 0.0]);
-    // In every turned frame the tool points along the frame's z: planes and axes were written independently by the CAM system.
+    // In every turned frame the tool points along the frame's z: planes and axes were written independently by the CAM
+    // system.
     let directions = |pose: &ProgramPose| pose.pose.axis().map(|c| (c * 2.0).round() / 2.0);
     assert!(program.poses.iter().any(|pose| directions(pose) == [-0.5, -0.5, 0.0]));
 }

@@ -1,7 +1,9 @@
 //! House rules that no lint knows.
 
+mod siblings;
 mod structure;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -51,6 +53,66 @@ fn offences(files: &[PathBuf], offends: impl Fn(&str) -> bool) -> Vec<String> {
 
 fn assert_none(offences: &[String], rule: &str) {
     assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
+}
+
+/// What is known to break a rule, one a line in a file beside this one, is what was found: nothing is added, and what
+/// has been put right leaves the list.
+fn ratchet(list: &str, found: &BTreeSet<String>) {
+    let known = text(&root().join("tests/tests/it/tidy").join(list));
+    let known: BTreeSet<String> = known
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        .map(String::from)
+        .collect();
+    let lines = |these: &BTreeSet<String>, those: &BTreeSet<String>| -> String {
+        let lines: Vec<&str> = these.difference(those).map(String::as_str).collect();
+        lines.join("\n")
+    };
+    let (new, gone) = (lines(found, &known), lines(&known, found));
+    assert!(
+        new.is_empty() && gone.is_empty(),
+        "{list}: against the rule and not known:\n{new}\nno longer true, and to be taken out:\n{gone}"
+    );
+}
+
+/// Longer lines of comments cannot be read beside the code.
+const WIDEST: usize = 120;
+
+/// Lines of comments that could be narrower, as `file:line: text`. Tables and examples cannot be broken anywhere.
+fn wide_comments(path: &Path) -> Vec<String> {
+    let (mut wide, mut example) = (Vec::new(), false);
+    for (number, line) in text(path).lines().enumerate() {
+        let Some(comment) = line.trim_start().strip_prefix("//") else {
+            example = false;
+            continue;
+        };
+        let words = comment.trim_start_matches(['/', '!']).trim_start();
+        example ^= words.starts_with("```");
+        if !example && !words.starts_with('|') && line.chars().count() > WIDEST {
+            wide.push(format!("{}:{}: {words}", path.display(), number + 1));
+        }
+    }
+    wide
+}
+
+#[test]
+fn comments_are_as_narrow_as_code() {
+    let (mut wide, mut found) = (BTreeSet::new(), Vec::new());
+    let known = text(&root().join("tests/tests/it/tidy/wide_comments.txt"));
+    for path in files(&["crates", "xtask", "tests"], "rs") {
+        let offences = wide_comments(&path);
+        let inner = path.strip_prefix(root()).expect("within the workspace");
+        let parts: Vec<_> = inner.iter().take(3).map(|part| part.to_string_lossy()).collect();
+        let folder = parts.join("/");
+        if !offences.is_empty() {
+            if !known.lines().any(|line| line == folder) {
+                found.extend(offences);
+            }
+            wide.insert(folder);
+        }
+    }
+    assert_none(&found, "comments of at most 120 columns");
+    ratchet("wide_comments.txt", &wide);
 }
 
 #[test]

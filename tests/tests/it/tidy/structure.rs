@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 const BESIDE: usize = 12;
 
 /// A module's path in its crate; the folder `a/b` is the module `[a, b]`.
-type Module = Vec<String>;
+pub(super) type Module = Vec<String>;
 
-fn sources() -> Vec<PathBuf> {
+pub(super) fn sources() -> Vec<PathBuf> {
     let folder = root().join("crates");
     let crates = fs::read_dir(folder).expect("the crates can be listed");
     let mut sources: Vec<PathBuf> = crates
@@ -47,7 +47,7 @@ fn folders_are_small() {
 }
 
 /// The modules of a crate with the files they stand in.
-fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
+pub(super) fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     let mut modules = BTreeMap::new();
     for file in files(&[&source.to_string_lossy()], "rs") {
         let inner = file.strip_prefix(source).expect("below the source").with_extension("");
@@ -64,7 +64,7 @@ fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
 }
 
 /// What stands in a file outside of its tests.
-fn code(file: &Path) -> String {
+pub(super) fn code(file: &Path) -> String {
     let text = text(file);
     let end = text.find("#[cfg(test)]\nmod ").unwrap_or(text.len());
     let lines = text[..end].lines();

@@ -1,5 +1,5 @@
-//! A program milled with the dexels of `BREP_cam`: `brep-cam-mill WORK STEP ANSWER [z]`. With `z`, by Z-dexels (three axes only), else by tri-dexels.
-//! Answers the height of the highest material of each column along z, row by row.
+//! A program milled with the dexels of `BREP_cam`: `brep-cam-mill WORK STEP ANSWER [z]`. With `z`, by Z-dexels (three
+//! axes only), else by tri-dexels. Answers the height of the highest material of each column along z, row by row.
 
 #[path = "../../work.rs"]
 mod work;
@@ -11,7 +11,8 @@ use brep_cam::stock_sim::{Column, DexelGrid};
 use brep_cam::{Feed, Motion, MotionKind, NullSink, Point3, Runner, Tolerance};
 use work::{Work, answer, seconds};
 
-/// The chord error of the profiles of ball ends over the square of the step: its default, 0.01, at half a millimetre, and as much smaller as what steps leave.
+/// The chord error of the profiles of ball ends over the square of the step: its default, 0.01, at half a millimetre,
+/// and as much smaller as what steps leave.
 const CHORD: f64 = 0.04;
 
 fn main() {

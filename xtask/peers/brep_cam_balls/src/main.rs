@@ -1,4 +1,5 @@
-//! What `crates/sweepsim-dexel/examples/csg_of_many_balls.rs` does, with the columns of `BREP_cam`: prints a line of JSON.
+//! What `crates/sweepsim-dexel/examples/csg_of_many_balls.rs` does, with the columns of `BREP_cam`: prints a line of
+//! JSON.
 
 use brep_cam::Point3;
 use brep_cam::stock_sim::mesh::stock_mesh;

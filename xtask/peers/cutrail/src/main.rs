@@ -1,4 +1,5 @@
-//! A program milled with the mesh booleans of `cutrail`: `cutrail-mill WORK TOLERANCE ANSWER`. Answers the corners of the triangles.
+//! A program milled with the mesh booleans of `cutrail`: `cutrail-mill WORK TOLERANCE ANSWER`. Answers the corners of
+//! the triangles.
 
 #[path = "../../work.rs"]
 mod work;

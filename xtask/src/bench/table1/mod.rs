@@ -51,7 +51,8 @@ impl Cutter {
         path(which)
     }
 
-    /// The box of the swept volume: of the tool's spheres about both ends of its axis (an axis that turns stays between its two ends).
+    /// The box of the swept volume: of the tool's spheres about both ends of its axis (an axis that turns stays between
+    /// its two ends).
     pub fn bounds(&self, path: &Path) -> ([f64; 3], [f64; 3]) {
         let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for pose in path.poses() {
@@ -103,7 +104,8 @@ pub fn table1() -> Result<(), String> {
     on(1, table1_here)?
 }
 
-/// The paper's Table 1, seconds, of the ball end: (method, cells, Sweep1 and Sweep2). Beside charts stands its fastest, Algorithm 3.
+/// The paper's Table 1, seconds, of the ball end: (method, cells, Sweep1 and Sweep2). Beside charts stands its fastest,
+/// Algorithm 3.
 const PAPER: [(Method, usize, [f64; 2]); 10] = [
     (Method::Mixed, 200, [0.35, 0.63]),
     (Method::Mixed, 500, [0.75, 1.20]),

@@ -13,10 +13,11 @@ const CELLS: [(usize, &str); 2] = [(200, ""), (500, WANTED)];
 /// Points at which the equations are evaluated.
 const POINTS: usize = 1024;
 
-/// The number of crossings times the time of one evaluation of `(X, Y, g)` with its gradient, over the time of the sweep.
+/// The number of crossings times the time of one evaluation of `(X, Y, g)` with its gradient, over the time of the
+/// sweep.
 ///
-/// The evaluation is that of the [forms](PatchMotion), at many points side by side, as no sweep can have all of them. (Charts evaluate the
-/// factors of these forms instead.)
+/// The evaluation is that of the [forms](PatchMotion), at many points side by side, as no sweep can have all of them.
+/// (Charts evaluate the factors of these forms instead.)
 pub fn share() -> Result<(), String> {
     on(1, here)?
 }
@@ -55,7 +56,8 @@ fn here() -> Result<(), String> {
     records.save()
 }
 
-/// Seconds of one evaluation of `X`, `Y`, their denominator and `g`, each with its gradient: the mean over the tool's patches.
+/// Seconds of one evaluation of `X`, `Y`, their denominator and `g`, each with its gradient: the mean over the tool's
+/// patches.
 fn evaluation(cutter: &Cutter, which: usize) -> Result<f64, String> {
     let path = cutter.path(which)?;
     let points = points();

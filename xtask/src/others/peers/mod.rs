@@ -1,5 +1,5 @@
-//! `cargo xtask peers`: other programs on the same work, in one run. They come from their registries into cargo's target folder; the workspace's lock file
-//! does not know them, and whoever cannot be had is skipped.
+//! `cargo xtask peers`: other programs on the same work, in one run. They come from their registries into cargo's
+//! target folder; the workspace's lock file does not know them, and whoever cannot be had is skipped.
 
 mod work;
 

@@ -23,7 +23,8 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// The parts of a path, each with so many steps that no point of the axis up to `height` moves farther than `spacing` in one.
+    /// The parts of a path, each with so many steps that no point of the axis up to `height` moves farther than
+    /// `spacing` in one.
     pub fn path(path: &Path, cutter: &Cutter, height: f64, spacing: f64) -> Vec<Self> {
         let segments = (0..path.moves()).flat_map(|number| path.segments(number, cutter.length, 1e-7));
         let mut before: Option<Segment> = None;

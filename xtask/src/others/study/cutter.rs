@@ -1,4 +1,5 @@
-//! A tool as the samplers see it: a solid of revolution, placed and intersected with a vertical line in closed form. Independent of the engine.
+//! A tool as the samplers see it: a solid of revolution, placed and intersected with a vertical line in closed form.
+//! Independent of the engine.
 
 use nalgebra::Vector3;
 use sweepsim_dexel::{DistanceTo, TriangleSoup};
@@ -24,7 +25,8 @@ enum Shape {
     Form(Vec<[f64; 2]>, Box<DistanceTo>),
 }
 
-/// Where a tool is: its tip, and its axis as a unit vector; and the orientation, for tools that are not quite of revolution.
+/// Where a tool is: its tip, and its axis as a unit vector; and the orientation, for tools that are not quite of
+/// revolution.
 #[derive(Clone, Copy)]
 pub struct Place {
     pub tip: Vector3<f64>,
@@ -111,7 +113,8 @@ impl Cutter {
         let height = from.dot(&place.axis);
         if let Shape::Form(_, surface) = &self.shape {
             let own = place.turn.transpose() * from;
-            // The triangles of neighbouring patches do not share corners, so the sign is unknown; points of the exact surface are not inside.
+            // The triangles of neighbouring patches do not share corners, so the sign is unknown; points of the exact
+            // surface are not inside.
             return surface
                 .nearest(own.into())
                 .map_or(f64::INFINITY, |near| near.distance.abs());
@@ -143,7 +146,8 @@ pub fn ball(centre: Vector3<f64>, radius: f64, [x, y]: [f64; 2]) -> Option<[f64;
     (square > 0.0).then(|| [centre.z - square.sqrt(), centre.z + square.sqrt()])
 }
 
-/// A vertical line beside an axis: at height `z` above the tip its distance from the axis has the square `a z² + 2 b z + c`, and it is `s + z·a_z` along the axis.
+/// A vertical line beside an axis: at height `z` above the tip its distance from the axis has the square
+/// `a z² + 2 b z + c`, and it is `s + z·a_z` along the axis.
 pub struct AxisLine {
     tip: f64,
     up: f64,

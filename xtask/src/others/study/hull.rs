@@ -1,4 +1,5 @@
-//! The convex hull of a ball end at two places: a tetrahedron, each of whose points is the centre of a ball. Exact between poses that do not turn.
+//! The convex hull of a ball end at two places: a tetrahedron, each of whose points is the centre of a ball. Exact
+//! between poses that do not turn.
 
 use super::cutter::{AxisLine, Cutter, Place, ball};
 use nalgebra::Vector3;

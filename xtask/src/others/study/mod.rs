@@ -1,4 +1,5 @@
-//! `cargo xtask study`: the tool sampled in time, as the field does, against exact dexels: errors, and times on one thread.
+//! `cargo xtask study`: the tool sampled in time, as the field does, against exact dexels: errors, and times on one
+//! thread.
 
 mod columns;
 mod cutter;
@@ -25,7 +26,8 @@ const EXAMPLES: [(&str, &str); 4] = [
 ];
 /// The coarsest spacing of placed tools, in mm; each of the next is half of the one before.
 const COARSEST: f64 = 2.0;
-/// A tool is placed so densely that no point of its axis, up to so many radii above the tip, moves farther than the spacing.
+/// A tool is placed so densely that no point of its axis, up to so many radii above the tip, moves farther than the
+/// spacing.
 const RADII: f64 = 4.0;
 
 /// One way to sample an example.
@@ -61,9 +63,9 @@ impl Study {
     }
 }
 
-/// Studies the examples whose names contain `filter`; runs of the sampler that would take more than `limit` seconds are left out
-/// beyond twice the time of the exact simulation. Writes the tables and
-/// pictures of the docs if all are studied.
+/// Studies the examples whose names contain `filter`; runs of the sampler that would take more than `limit` seconds are
+/// left out beyond twice the time of the exact simulation. Writes the tables and pictures of the docs if all are
+/// studied.
 pub fn run(filter: Option<&str>, limit: f64) -> Result<(), String> {
     let chosen = EXAMPLES
         .iter()

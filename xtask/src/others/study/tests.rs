@@ -83,8 +83,8 @@ fn hulls_hold_what_lies_between() {
     assert!(hits > 400, "{hits}");
 }
 
-/// Both kinds of sampling converge to the exact dexels: balls with the square of the spacing, hulls with the spacing itself, because the hull of a tool that
-/// turns about a point of its axis is wide there.
+/// Both kinds of sampling converge to the exact dexels: balls with the square of the spacing, hulls with the spacing
+/// itself, because the hull of a tool that turns about a point of its axis is wide there.
 #[test]
 fn errors_shrink_as_they_must() {
     let tool = Tool::ball(3.0, 30.0).unwrap();

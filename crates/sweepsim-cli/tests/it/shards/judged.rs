@@ -5,7 +5,8 @@ use crate::support::{Workdir, text};
 use std::fs;
 use sweepsim_formats::Report;
 
-/// Two pockets: the second too deep, left by a rapid through the stock. Shank and holder reach the stock, and a clamp is in the way.
+/// Two pockets: the second too deep, left by a rapid through the stock. Shank and holder reach the stock, and a clamp
+/// is in the way.
 const PROGRAM: &str = "G21 G90 G17
 T1 M6
 S8000 M3

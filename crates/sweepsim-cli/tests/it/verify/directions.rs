@@ -4,7 +4,8 @@ use crate::support::{Workdir, text};
 use std::fs;
 use sweepsim_formats::{Report, ReportedFinding};
 
-/// A web 0.2 thick between two dexels along z, which are 1 apart. A rapid goes through it, and a feed move through a plate as thin that is clamped there.
+/// A web 0.2 thick between two dexels along z, which are 1 apart. A rapid goes through it, and a feed move through a
+/// plate as thin that is clamped there.
 const JOB: &str = r#"Job(
     grid: Grid(min: (0, 0), max: (30, 20), cells: (30, 20)),
     stock: Union([Block(min: (0, 0, 0), max: (30, 20, 4)), Block(min: (12.9, 0, 0), max: (13.1, 20, 12))]),
@@ -41,8 +42,8 @@ fn what_stands_between_dexels_is_found_along_the_others() {
         .collect();
     let expected = [("rapid", Some(1), None), ("fixture", Some(2), None)];
     assert_eq!(told, expected, "{all:?}");
-    // The wall of the cutter reaches the web at x = 12.9 after (12.9 − 1.5 − 4) of 16, the plate at 24.9 after (24.9 − 1.5 − 20) of 8: on the line through
-    // the axis at once, on those beside it later. Lines along x are 1 apart.
+    // The wall of the cutter reaches the web at x = 12.9 after (12.9 − 1.5 − 4) of 16, the plate at 24.9 after (24.9 −
+    // 1.5 − 20) of 8: on the line through the axis at once, on those beside it later. Lines along x are 1 apart.
     for (finding, time, plate) in [(&all[0], 7.4 / 16.0, 12.9), (&all[1], 3.4 / 8.0, 24.9)] {
         let late = finding.time.expect("a time") - time;
         let length = if finding.kind == "rapid" { 16.0 } else { 8.0 };

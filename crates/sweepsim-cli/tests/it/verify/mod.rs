@@ -267,7 +267,8 @@ fn the_result_of_a_run_is_a_target() {
     assert_eq!(code, Some(2));
 }
 
-/// The shipped faulty bracket with its circle a little narrower or wider: bisection cuts the level arc into parts of less than a micrometre.
+/// The shipped faulty bracket with its circle a little narrower or wider: bisection cuts the level arc into parts of
+/// less than a micrometre.
 #[test]
 fn level_arcs_leave_nothing_unresolved() {
     let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/verify");

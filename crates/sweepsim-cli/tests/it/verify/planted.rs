@@ -1,7 +1,7 @@
 //! Faults planted in the text of programs, judged by brute force.
 //!
-//! A program is a list of blocks, from which its text is written, word by word as far as they change, and from which the judge places cylinders at dense
-//! times. The judge knows nothing of the reader, the job or the lines.
+//! A program is a list of blocks, from which its text is written, word by word as far as they change, and from which
+//! the judge places cylinders at dense times. The judge knows nothing of the reader, the job or the lines.
 
 use crate::support::{Workdir, text};
 use by_force::{Case, Cylinder, STEPS, box_mesh, pose};
@@ -62,7 +62,8 @@ struct Program {
 
 const NAMES: [char; 4] = ['X', 'Y', 'Z', 'A'];
 
-/// Clears the top of a block in rows, upright or tilted by A, then cuts a groove with a thinner tool: nothing is wrong with it.
+/// Clears the top of a block in rows, upright or tilted by A, then cuts a groove with a thinner tool: nothing is wrong
+/// with it.
 fn clean(seed: u64) -> Program {
     let random = &mut Random(seed.wrapping_mul(0x1234_5678_9ABC_DEF1));
     let tilt = if seed.is_multiple_of(2) {
@@ -340,7 +341,8 @@ fn triple([x, y, z]: [f64; 3]) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
-/// Programs without a fault, and with one of each kind in turn; at least `least` findings of each kind of fault must be certain.
+/// Programs without a fault, and with one of each kind in turn; at least `least` findings of each kind of fault must be
+/// certain.
 fn judged(seeds: std::ops::Range<u64>, least: usize) {
     let mut sure = [0; FAULTS as usize];
     for seed in seeds {

@@ -1,4 +1,5 @@
-//! The steps of a section of a program: its poses, and between them the corners of rapids that the machine makes as dog-legs.
+//! The steps of a section of a program: its poses, and between them the corners of rapids that the machine makes as
+//! dog-legs.
 
 use sweepsim_nc::AxisFinding;
 
@@ -15,7 +16,8 @@ pub(super) struct Step {
     pub share: [f64; 2],
 }
 
-/// The findings of these steps, at their numbers in the section. Steps are sorted by pose; those without findings need not be among them.
+/// The findings of these steps, at their numbers in the section. Steps are sorted by pose; those without findings need
+/// not be among them.
 pub(super) fn at_steps(findings: &[AxisFinding], steps: &[Step]) -> Vec<AxisFinding> {
     let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
         return Vec::new();

@@ -100,7 +100,8 @@ pub(crate) fn rapids(raw: &[schema::Move]) -> impl Iterator<Item = bool> + '_ {
     moves.map(|way| matches!(way, schema::Move::Rapid(_)))
 }
 
-/// How long each move takes, in seconds: at `feed` in millimetres per minute, or as fast as axes of unknown speed are assumed to be. The duration of a turn in place at a feed is not known.
+/// How long each move takes, in seconds: at `feed` in millimetres per minute, or as fast as axes of unknown speed are
+/// assumed to be. The duration of a turn in place at a feed is not known.
 pub(crate) fn seconds(path: &Path, rapid: &Flags, feed: Option<f64>) -> Seconds {
     let of_move = |number: usize| {
         let length = path.tip_length(number);

@@ -45,13 +45,15 @@ pub struct JobPath {
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Flags,
-    /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, in the coordinates of the part.
+    /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, in the coordinates of the
+    /// part.
     pub other_courses: OtherCourses,
     /// Whether the spindle stands still in each move; empty if the program never mentions the spindle.
     pub spindle_stopped: Flags,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
     pub no_feed: Flags,
-    /// What the machine cannot do, if one is known: axes beyond their limits, or faster than they can be. The pose is one of this path.
+    /// What the machine cannot do, if one is known: axes beyond their limits, or faster than they can be. The pose is
+    /// one of this path.
     pub beyond: Vec<AxisFinding>,
     /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
     pub seconds: Seconds,
@@ -82,7 +84,8 @@ pub struct Origin {
 }
 
 impl JobPath {
-    /// The files and lines that a pose comes from: first its own, then those of the calls that led to it, the innermost first.
+    /// The files and lines that a pose comes from: first its own, then those of the calls that led to it, the innermost
+    /// first.
     #[must_use]
     pub fn places(&self, pose: usize) -> Vec<(&FilePath, usize)> {
         let file = |index: usize| self.files.get(index).map_or(FilePath::new(""), PathBuf::as_path);

@@ -19,8 +19,8 @@ pub(crate) struct ProgramOrigin<'a> {
     pub provided: &'a Provided,
 }
 
-/// The paths of a program. The tool axis turns according to `law` where the program does not specify how. `tool` is the job's tool for the whole
-/// program; without it, the program's tool numbers are used.
+/// The paths of a program. The tool axis turns according to `law` where the program does not specify how. `tool` is the
+/// job's tool for the whole program; without it, the program's tool numbers are used.
 pub(crate) fn of_program(
     mut program: Program,
     origin: ProgramOrigin,

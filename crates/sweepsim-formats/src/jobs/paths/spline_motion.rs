@@ -8,8 +8,8 @@
 //! )
 //! ```
 //!
-//! A curve without knots gets evenly spaced knots over the domain of the other curve, or over `[0, 1]`. Without an orientation, the tool axis
-//! stays along z.
+//! A curve without knots gets evenly spaced knots over the domain of the other curve, or over `[0, 1]`. Without an
+//! orientation, the tool axis stays along z.
 
 use std::path::Path as FilePath;
 use sweepsim_motion::{MotionError, Path, SplineMotion};

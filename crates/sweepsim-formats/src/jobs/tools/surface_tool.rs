@@ -1,4 +1,5 @@
-//! Tools made of B-spline surfaces: the file that `Surface("…")` refers to. A side of a surface may join several others.
+//! Tools made of B-spline surfaces: the file that `Surface("…")` refers to. A side of a surface may join several
+//! others.
 //!
 //! ```ron
 //! Surfaces(

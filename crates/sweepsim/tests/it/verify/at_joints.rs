@@ -1,4 +1,5 @@
-//! Rapids whose joints are where lines are in the tool's wall: what one move only touches at its end, and the next one cuts, is found.
+//! Rapids whose joints are where lines are in the tool's wall: what one move only touches at its end, and the next one
+//! cuts, is found.
 
 use std::ops::ControlFlow;
 use sweepsim::prelude::*;

@@ -1,8 +1,9 @@
 //! Verification against brute force: the tool placed at dense times, on the same lines.
 //!
-//! All solids here are cylinders, whose intersection with a line at any pose is a formula. For each program two bounds are computed: `sure`, with what
-//! must not touch a little smaller and what removes material a little larger, and `possible`, the other way round. What is sure must be found, and what is
-//! found must be possible; first times lie between theirs.
+//! All solids here are cylinders, whose intersection with a line at any pose is a formula. For each program two bounds
+//! are computed: `sure`, with what must not touch a little smaller and what removes material a little larger, and
+//! `possible`, the other way round. What is sure must be found, and what is found must be possible; first times lie
+//! between theirs.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -158,8 +159,8 @@ impl Case {
         all
     }
 
-    /// Findings of some tools one after the other, by brute force, with the number of the tool and their first times. Stock, clamp and target are those of
-    /// the first.
+    /// Findings of some tools one after the other, by brute force, with the number of the tool and their first times.
+    /// Stock, clamp and target are those of the first.
     pub fn by_force(cases: &[Self], sure: bool) -> BTreeMap<(usize, Key), f64> {
         let sign = if sure { -1.0 } else { 1.0 };
         let first = &cases[0];

@@ -164,7 +164,8 @@ fn collisions_in_moves_of_other_kinds() {
 /// The kinds of planted faults.
 const FAULTS: usize = 10;
 
-/// Plants a fault of a kind in a program without any, and judges what is found by brute force; the number of sure findings.
+/// Plants a fault of a kind in a program without any, and judges what is found by brute force; the number of sure
+/// findings.
 fn planted(seed: u64) -> usize {
     let random = &mut Random::new(1000 + seed);
     let mut case = clean(random);

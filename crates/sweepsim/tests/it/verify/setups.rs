@@ -104,14 +104,15 @@ fn rotary_axes_belong_to_the_set_up() {
         .collect();
     let written = path(&dense, Law::Slerp);
     let [a, b] = [&moved, &written].map(|path| run(&[ToolPath::new(&cutter, path)]).remaining);
-    // Each great circle leaves the cone by less than (half a degree)²/8 · sin 0.4 at most: 20 mm up the tool that is 8e-5 mm; lines that graze a wall see
-    // more of it, so compare volumes.
+    // Each great circle leaves the cone by less than (half a degree)²/8 · sin 0.4 at most: 20 mm up the tool that is
+    // 8e-5 mm; lines that graze a wall see more of it, so compare volumes.
     let volume = |dexels: &Dexels| dexels.volume();
     assert!(volume(&stock()) - volume(&a) > 100.0);
     assert!((volume(&a) - volume(&b)).abs() < 0.05, "{} {}", volume(&a), volume(&b));
 }
 
-/// Lying on a plate below, with a clamp on the far side of it; in the next set-up upside down, and the plate where the first cuts.
+/// Lying on a plate below, with a clamp on the far side of it; in the next set-up upside down, and the plate where the
+/// first cuts.
 #[test]
 fn fixtures_count_in_their_own_set_up_only() {
     let cutter = Assembly::new(Tool::flat(2.0, 20.0).unwrap());

@@ -1,4 +1,5 @@
-//! Paths of a single pose: nothing moves, but the tool removes what it covers, and its bodies touch what is in their way.
+//! Paths of a single pose: nothing moves, but the tool removes what it covers, and its bodies touch what is in their
+//! way.
 
 use super::by_force::{Cylinder, pose};
 use std::ops::ControlFlow;

@@ -19,7 +19,8 @@ fn verified(case: &Case, threads: usize) -> Verification {
     pool.install(|| verify(Scene::new(stock), &program, &options, go_on, &()).unwrap())
 }
 
-/// A long raster, deep in the block and partly by rapids, with a holder that drags through what is left: most of its moves do harm.
+/// A long raster, deep in the block and partly by rapids, with a holder that drags through what is left: most of its
+/// moves do harm.
 fn harmful(seed: u64) -> Case {
     let random = &mut Random::new(seed);
     let mut case = clean(random);

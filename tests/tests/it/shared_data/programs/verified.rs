@@ -1,5 +1,5 @@
-//! What verification says of real programs on a guessed block, with a holder that is too short: each finding is judged by placing cylinders at dense times,
-//! on the line of its place.
+//! What verification says of real programs on a guessed block, with a holder that is too short: each finding is judged
+//! by placing cylinders at dense times, on the line of its place.
 
 use super::super::folder;
 use by_force::{Cylinder, Placement, meets, subtract};
@@ -48,7 +48,8 @@ fn placed(path: &Path, number: usize, to: f64) -> impl Iterator<Item = Placement
     })
 }
 
-/// The number of findings of a program, a third of which are judged, and how many of them begin after their move has begun.
+/// The number of findings of a program, a third of which are judged, and how many of them begin after their move has
+/// begun.
 fn judged(program: &str, cell: f64, block: [[f64; 3]; 2]) -> [usize; 2] {
     let [min, max] = block;
     let file = folder().join(program);
