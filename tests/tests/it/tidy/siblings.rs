@@ -1,7 +1,8 @@
 //! No circles between the files of a folder, but for those that are listed and may only become fewer.
 //!
-//! A module is one of its folder with everything below it. A folder's own file (`mod.rs`) belongs to none of its modules:
-//! it names its children, and they may use what it says to all of them. So circles are looked for between siblings alone.
+//! A module is one of its folder with everything below it. A folder's own file (`mod.rs`) belongs to none of its
+//! modules: it names its children, and they may use what it says to all of them. So circles are looked for between
+//! siblings alone.
 
 use super::structure::{Module, code, modules, sources};
 use super::{ratchet, root};
@@ -89,7 +90,7 @@ fn arrows() -> BTreeMap<String, BTreeMap<String, BTreeSet<String>>> {
                 if common == module.len() || common == used.len() {
                     continue;
                 }
-                let folder = [&[name.clone()], &module[..common]].concat().join("/");
+                let folder = [std::slice::from_ref(&name), &module[..common]].concat().join("/");
                 let uses = arrows.entry(folder).or_default();
                 uses.entry(module[common].clone())
                     .or_default()
