@@ -4,37 +4,21 @@
 //! `CLEAR`, `RTRCTO` and `RETURN` above it. With `CLEAR`, `RAPTO` is measured down from there (Creo).
 
 use super::statement::Statement;
+use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
+use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
 
-/// A cycle in effect. Lengths in millimetres.
+/// A cycle in effect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cycle {
-    pub depth: f64,
-    /// The first peck, and the further ones.
-    pub pecks: Option<[f64; 2]>,
-    /// Whether pecks only break the chip, instead of returning to the rapid level.
-    pub breaks_chips: bool,
-    /// Above the point, where the feed begins.
-    pub rapid_level: f64,
+    /// All but the end.
+    pub hole: HoleCycle,
     /// Above the point, where the tool goes afterwards; `None` for the level where it was before the cycle.
     pub return_level: Option<f64>,
-    /// Whether the tool leaves the hole at its feed: taps, bores, reamers.
-    pub feeds_out: bool,
     pub feed: Option<(f64, FeedMode)>,
-    pub dwell: Option<f64>,
     /// An index of the program's calls.
     pub call: u32,
-}
-
-/// A move of a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
-    /// Above the point.
-    pub level: f64,
-    pub rapid: bool,
-    /// Whether the tool rests after it.
-    pub dwell: bool,
 }
 
 /// What a `CYCLE` statement does.
@@ -44,7 +28,7 @@ pub(super) enum CycleStatement {
     Off,
     /// Resumes the last one.
     On,
-    Begin(Cycle),
+    Begin(Box<Cycle>),
 }
 
 /// The most pecks at one point.
@@ -173,51 +157,35 @@ impl CycleStatement {
                 return Err(NcProblem::value("the peck of this cycle", least, expected));
             }
         }
-        Ok(Self::Begin(Cycle {
-            depth,
-            pecks,
-            breaks_chips: has("BRKCHP") || has("CHIP"),
-            rapid_level,
-            return_level,
-            feeds_out: ["TAP", "BORE", "REAM", "RIGID"].iter().any(|word| has(word)),
-            feed,
-            dwell: statement.after("DWELL").filter(|seconds| *seconds > 0.0 && !has("REV")),
-            call,
-        }))
-    }
-}
-
-impl Cycle {
-    /// The moves at a point, from the rapid level on. `before` is the level where the tool was before the cycle.
-    pub fn steps(&self, before: f64) -> Vec<Step> {
-        let go = |level: f64, rapid: bool| Step {
-            level,
-            rapid,
-            dwell: false,
-        };
-        let mut steps = vec![go(self.rapid_level, true)];
-        if let Some([first, further]) = self.pecks {
-            let mut reached = first;
-            while reached < self.depth * (1.0 - 1e-12) {
-                steps.push(go(-reached, false));
-                let above = (PECK_CLEARANCE - reached).min(self.rapid_level.max(-reached));
-                if self.breaks_chips {
-                    steps.push(go(above, true));
-                } else {
-                    steps.extend([go(self.rapid_level, true), go(above, true)]);
-                }
-                reached += further;
-            }
-        }
-        steps.push(Step {
-            level: -self.depth,
-            rapid: false,
-            dwell: self.dwell.is_some(),
+        let work = pecks.map_or(HoleWork::Plunge, |[first, infeed]| {
+            HoleWork::Pecks(Pecks {
+                first: -first,
+                infeed,
+                rounding: 1e-12 * depth,
+                clears: !has("BRKCHP") && !has("CHIP"),
+                above: PECK_CLEARANCE,
+                ..Pecks::default()
+            })
         });
-        if self.feeds_out {
-            steps.push(go(self.rapid_level, false));
-        }
-        steps.push(go(self.return_level.unwrap_or(before).max(self.rapid_level), true));
-        steps
+        let feeds_out = ["TAP", "BORE", "REAM", "RIGID"].iter().any(|word| has(word));
+        let dwell = statement.after("DWELL").filter(|seconds| *seconds > 0.0 && !has("REV"));
+        let hole = HoleCycle {
+            start: rapid_level,
+            bottom: -depth,
+            work,
+            at_bottom: dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect(),
+            out: if feeds_out {
+                WayOut::FeedToStart(None)
+            } else {
+                WayOut::Rapid
+            },
+            ..HoleCycle::default()
+        };
+        Ok(Self::Begin(Box::new(Cycle {
+            hole,
+            return_level,
+            feed,
+            call,
+        })))
     }
 }

@@ -1,11 +1,11 @@
 //! Moves: `GOTO`, `GODLTA`, `FROM`, arcs and the points of cycles.
 
+use super::cycles::Cycle;
 use super::frames::{Vector, add, dot, norm, sub};
 use super::reader::{Reader, numbers};
 use super::statement::Statement;
 use super::words;
-use crate::model::event::EventKind;
-use crate::model::program::FeedMode;
+use crate::drive::HolePlace;
 use crate::model::read_options::AxisLaw;
 use crate::text::error::{Located, NcProblem};
 
@@ -140,41 +140,33 @@ impl Reader<'_> {
     }
 
     /// A point of a cycle.
-    fn drill(&mut self, cycle: &super::cycles::Cycle, point: Vector, axis: Vector) -> Result<(), NcProblem> {
+    fn drill(&mut self, cycle: &Cycle, point: Vector, axis: Vector) -> Result<(), NcProblem> {
         let up = axis.map(|c| c / norm(axis));
-        let at = |level: f64| add(point, level, up);
         let now = self.axis();
         let same_axis = dot(now, up) > (1.0 - 1e-9) * norm(now);
+        let mut hole = cycle.hole.clone();
         let level = |tip: Vector| dot(sub(tip, point), up);
-        let before = self
-            .track
-            .known()
-            .filter(|_| same_axis)
-            .map_or(cycle.rapid_level, level);
-        let top = before.max(cycle.rapid_level);
+        let before = self.track.known().filter(|_| same_axis).map_or(hole.start, level);
+        let end = cycle.return_level.unwrap_or(before);
+        hole.end = end.max(hole.start);
         self.track.place.call = Some(cycle.call);
         // Up first, then across, then down.
-        if let (Some(tip), true, true) = (
-            self.track.known(),
-            self.track.joined && same_axis,
-            before < cycle.rapid_level,
-        ) {
-            self.line_to(add(tip, cycle.rapid_level - before, up), axis, true)?;
+        if let (Some(tip), true) = (self.track.known(), self.track.joined && before < hole.start) {
+            self.line_to(add(tip, hole.start - before, up), axis, true)?;
         }
-        let return_level = cycle.return_level.unwrap_or(before);
-        let across = if same_axis { top } else { top.max(return_level) };
-        self.line_to(at(across), axis, true)?;
-        let modal = (self.track.feed, self.feed_mode);
+        let top = before.max(hole.start);
+        let across = if same_axis { top } else { top.max(end) };
+        self.line_to(add(point, across, up), axis, true)?;
+        let modal = (self.track.feed, self.track.feed_mode);
         if let Some((own, own_mode)) = cycle.feed {
-            (self.track.feed, self.feed_mode) = (Some(own), own_mode);
+            (self.track.feed, self.track.feed_mode) = (Some(own), own_mode);
         }
-        for step in cycle.steps(before) {
-            self.line_to(at(step.level), axis, step.rapid)?;
-            if let (true, Some(seconds)) = (step.dwell, cycle.dwell) {
-                self.track.event(EventKind::Dwell { seconds })?;
-            }
-        }
-        (self.track.feed, self.feed_mode) = modal;
+        let place = HolePlace {
+            origin: point,
+            axes: [[0.0; 3], [0.0; 3], up],
+        };
+        self.track.hole(&hole, place)?;
+        (self.track.feed, self.track.feed_mode) = modal;
         self.track.place.call = None;
         Ok(())
     }
@@ -205,7 +197,6 @@ impl Reader<'_> {
     pub fn line_to(&mut self, tip: Vector, axis: Vector, rapid: bool) -> Result<(), NcProblem> {
         self.check_turn(axis)?;
         self.load_next();
-        self.track.feed_mode = if rapid { FeedMode::default() } else { self.feed_mode };
         self.track.line_towards(tip, axis, rapid)
     }
 

@@ -12,7 +12,7 @@ use crate::drive::Track;
 use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
 use crate::model::names::Format;
-use crate::model::program::{Call, FeedMode, Program, Units};
+use crate::model::program::{Call, Program, Units};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcError, NcProblem, TextPosition};
 
@@ -29,10 +29,9 @@ pub(super) struct Reader<'o> {
     /// and the one in effect, in that of the poses.
     pub frame: WorkFrame,
     pub rapid: bool,
-    pub feed_mode: FeedMode,
     pub arc: Option<PendingArc>,
-    pub cycle: Option<Cycle>,
-    last_cycle: Option<Cycle>,
+    pub cycle: Option<Box<Cycle>>,
+    last_cycle: Option<Box<Cycle>>,
     pub nurbs: Nurbs,
     pub tools: LoadedTools,
     pub units: Option<Units>,
@@ -51,7 +50,6 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
         first_frame: None,
         frame: WorkFrame::default(),
         rapid: false,
-        feed_mode: FeedMode::PerMinute,
         arc: None,
         cycle: None,
         last_cycle: None,

@@ -31,10 +31,10 @@ impl Reader<'_> {
 
     pub fn fedrat(&mut self, statement: &Statement) {
         if statement.has("INVERS") || statement.has("INVERSE") {
-            self.feed_mode = FeedMode::InverseTime;
+            self.track.feed_mode = FeedMode::InverseTime;
             self.track.feed = statement.number();
         } else if let Some((value, mode)) = feed(statement, self.unit) {
-            (self.track.feed, self.feed_mode) = (Some(value), mode);
+            (self.track.feed, self.track.feed_mode) = (Some(value), mode);
         } else if let Some(value) = statement.number() {
             self.track.feed = Some(value);
         }

@@ -189,7 +189,8 @@ impl Track {
         Ok(())
     }
 
-    fn stroke(&self, end: [f64; 3], abc: [f64; 3], rapid: bool, bend: Option<Bend>, plane: ArcPlane) -> Stroke {
+    /// A programmed move from here, at the feed and with the stop in effect.
+    pub fn stroke(&self, end: [f64; 3], abc: [f64; 3], rapid: bool, bend: Option<Bend>, plane: ArcPlane) -> Stroke {
         Stroke {
             end,
             abc,

@@ -1,6 +1,7 @@
 //! What a program does besides moving, where it is called from, and its end: as much as may be kept.
 
 use super::contour::ProgramPlace;
+use super::trace::Canonical;
 use super::track::Track;
 use crate::model::event::{Event, EventKind, MOST_TEXT};
 use crate::model::positions::ProgramPositions;
@@ -27,6 +28,24 @@ impl Track {
         match self.event_waits(kind) {
             Some(kind) => self.record(kind),
             None => Ok(()),
+        }
+    }
+
+    /// The tool rests.
+    pub fn rest(&mut self, seconds: f64) -> Result<(), NcProblem> {
+        if !(0.0..=1e9).contains(&seconds) {
+            return Err(NcProblem::value(
+                "the time of a dwell",
+                seconds,
+                "a number of seconds from 0 on",
+            ));
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.commands.push(Canonical::Dwell(seconds));
+        }
+        match seconds > 0.0 {
+            true => self.event(EventKind::Dwell { seconds }),
+            false => Ok(()),
         }
     }
 

@@ -47,8 +47,8 @@ pub(crate) struct Track {
     pub(super) kept_arcs: KeptArcs,
     pub chord_note: String,
     pub trace: Option<Trace>,
-    /// A path begins at the end of its first move, wherever the tool was before (CL files).
-    pub(super) begins_at_ends: bool,
+    /// Whether the program gives poses (CL files): a path begins at the end of its first move, and rapids have no mode of feeds.
+    pub(super) of_poses: bool,
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
@@ -88,7 +88,7 @@ impl Track {
                 rounded(options.arc_tolerance)
             ),
             trace: None,
-            begins_at_ends: false,
+            of_poses: false,
             contour: Contour::default(),
             text: 0,
         }
@@ -104,7 +104,7 @@ impl Track {
         track.program.machine = options.machine.clone();
         track.coordinates = Coordinates::Tip;
         track.direct = Some([0.0, 0.0, 1.0]);
-        track.begins_at_ends = true;
+        track.of_poses = true;
         track
     }
 
@@ -308,7 +308,7 @@ impl Track {
 
     /// The start of a feed move, if the path does not lead there.
     pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
-        if rapid || self.joined || self.begins_at_ends {
+        if rapid || self.joined || self.of_poses {
             return Ok(());
         }
         match self.known() {
@@ -345,8 +345,10 @@ impl Track {
             made.call = self.place.call;
             made.joined = self.joined;
             made.tool = self.tool;
-            made.feed = if rapid { None } else { self.feed };
-            made.feed_mode = self.feed_mode;
+            made.feed = self.feed.filter(|_| !rapid);
+            if !(rapid && self.of_poses) {
+                made.feed_mode = self.feed_mode;
+            }
             made.exact_stop = self.exact_stop;
             made.tip_control = self.coordinates == Coordinates::Tip || self.driver.kinematics().is_none();
             if self.joined {

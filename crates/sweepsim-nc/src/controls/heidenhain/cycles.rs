@@ -1,58 +1,11 @@
 //! Drilling cycles.
 
-use std::f64::consts::TAU;
-
 use super::interpreter::Reader;
 use super::line::Line;
 use super::planes::is_frame_cycle;
-use crate::drive::CircularArc;
+use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
 use crate::model::event::EventKind;
 use crate::text::error::{Located, NcProblem};
-
-/// The most infeeds of one hole.
-const MOST_PECKS: usize = 10_000;
-
-/// A drilling cycle, in millimetres along the tool's axis.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cycle {
-    surface: f64,
-    clearance: f64,
-    second: f64,
-    depth: f64,
-    infeed: Option<f64>,
-    decrement: f64,
-    feed: Option<f64>,
-    /// The feed out of the hole; without it, a rapid.
-    out: Option<f64>,
-    feeds_out: bool,
-    dwell: f64,
-    kind: Kind,
-}
-
-/// What a cycle does besides going down and up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Drill,
-    /// 202: away from the wall by 0.2 mm before it goes up, in one of the plane's directions.
-    Bore {
-        aside: Option<[f64; 2]>,
-    },
-    /// 204: through the hole beside its middle, and up from below.
-    Back {
-        /// By how much, in which direction.
-        aside: [f64; 2],
-        /// The lower end of the counterbore's stroke below the surface, and its upper end.
-        below: f64,
-        up: f64,
-        feed: Option<f64>,
-    },
-    /// 208: a helix of this radius and pitch, counter-clockwise or clockwise.
-    Helix {
-        radius: f64,
-        pitch: f64,
-        counter_clockwise: bool,
-    },
-}
 
 /// By how much cycle 202 leaves the wall, in mm.
 const FROM_THE_WALL: f64 = 0.2;
@@ -118,7 +71,7 @@ impl Reader<'_> {
         }
     }
 
-    fn define(&self, number: u32, line: &Line) -> Result<Cycle, Located> {
+    fn define(&self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
         let find = |parameter: u32| -> Result<Option<f64>, Located> {
             let name = format!("Q{parameter}=");
             for (index, token) in line.tokens.iter().enumerate() {
@@ -160,6 +113,16 @@ impl Reader<'_> {
                 )));
             }
         };
+        let surface = length(203)?.unwrap_or(0.0);
+        let start = surface + clearance;
+        let mut hole = HoleCycle {
+            start,
+            end: start.max(surface + length(204)?.unwrap_or(0.0)),
+            ..HoleCycle::default()
+        };
+        let dwell = find(if number == 204 { 255 } else { 211 })?.filter(|seconds| *seconds > 0.0);
+        let dwell = dwell.filter(|_| number != 208);
+        hole.at_bottom = dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect();
         if number == 204 {
             let Some(aside) = aside else {
                 let problem =
@@ -174,24 +137,15 @@ impl Reader<'_> {
                     "positive",
                 )));
             }
-            return Ok(Cycle {
-                surface: length(203)?.unwrap_or(0.0),
-                clearance,
-                second: length(204)?.unwrap_or(0.0),
-                depth: -thickness,
-                infeed: None,
-                decrement: 0.0,
-                feed: find(253)?,
-                out: None,
-                feeds_out: false,
-                dwell: find(255)?.unwrap_or(0.0).max(0.0),
-                kind: Kind::Back {
-                    aside: aside.map(|c| c * off),
-                    below: -thickness - clearance - edge,
-                    up: -thickness + depth - edge,
-                    feed: find(254)?,
-                },
-            });
+            hole.bottom = surface + (-thickness - clearance - edge);
+            hole.feed = find(253)?;
+            hole.aside = aside.map(|c| c * off);
+            hole.work = HoleWork::Back {
+                up: surface + (-thickness + depth - edge),
+                feed: find(254)?,
+                rapid: false,
+            };
+            return Ok(hole);
         }
         let depth = need(201)?;
         if depth >= 0.0 {
@@ -200,10 +154,23 @@ impl Reader<'_> {
                 line.all(),
             ));
         }
-        let kind = match number {
-            202 => Kind::Bore {
-                aside: aside.map(|c| c.map(|c| c * FROM_THE_WALL)),
-            },
+        hole.bottom = surface + depth;
+        hole.feed = find(206)?;
+        hole.out = WayOut::RapidToStart;
+        match number {
+            200 | 203 | 205 => {
+                if let Some(infeed) = length(202)?.filter(|infeed| *infeed > 0.0) {
+                    hole.work = HoleWork::Pecks(Pecks {
+                        first: surface - infeed,
+                        infeed,
+                        decrease: length(212)?.unwrap_or(0.0).max(0.0),
+                        least: 1e-3,
+                        clears: true,
+                        above: clearance.min(1.0),
+                        ..Pecks::default()
+                    });
+                }
+            }
             208 => {
                 let (diameter, pitch) = (need(335)?, need(334)?);
                 let Some(tool) = self.cutter_radius() else {
@@ -221,166 +188,30 @@ impl Reader<'_> {
                     );
                     return Err(fail(problem));
                 }
-                Kind::Helix {
-                    radius,
-                    pitch,
-                    counter_clockwise: find(351)? != Some(-1.0),
+                let sense = if find(351)? == Some(-1.0) { -1.0 } else { 1.0 };
+                let turns = sense * ((start - hole.bottom) / pitch);
+                hole.work = HoleWork::Helix { radius, turns };
+            }
+            // Boring, reaming and tapping.
+            _ => {
+                let out = find(208)?.filter(|feed| *feed > 0.0);
+                hole.out = WayOut::FeedToStart(out);
+                if number == 202 {
+                    hole.aside = aside.unwrap_or_default().map(|c| c * FROM_THE_WALL);
                 }
             }
-            _ => Kind::Drill,
-        };
-        let pecks = matches!(number, 200 | 203 | 205);
-        let tapping = matches!(number, 206 | 207 | 209);
-        Ok(Cycle {
-            surface: length(203)?.unwrap_or(0.0),
-            clearance,
-            second: length(204)?.unwrap_or(0.0),
-            depth,
-            infeed: if pecks {
-                length(202)?.filter(|infeed| *infeed > 0.0)
-            } else {
-                None
-            },
-            decrement: if pecks {
-                length(212)?.unwrap_or(0.0).max(0.0)
-            } else {
-                0.0
-            },
-            feed: find(206)?,
-            out: find(208)?.filter(|feed| *feed > 0.0),
-            feeds_out: tapping || matches!(number, 201 | 202),
-            dwell: find(211)?.unwrap_or(0.0).max(0.0),
-            kind,
-        })
+        }
+        Ok(hole)
     }
 
     /// Calls the cycle at the current place.
     pub(super) fn drill(&mut self) -> Result<(), NcProblem> {
-        let Some(cycle) = self.cycle.clone() else {
-            if self.uncertain {
-                return Ok(());
-            }
-            return Err(NcProblem::syntax(
+        match &self.cycle {
+            Some(cycle) => self.track.hole_here(cycle, self.modes.plane, self.uncertain),
+            None if self.uncertain => Ok(()),
+            None => Err(NcProblem::syntax(
                 "a cycle is called, but none is defined: expected CYCL DEF before it",
-            ));
-        };
-        let Some(here) = self.track.known() else {
-            if self.uncertain {
-                return Ok(());
-            }
-            return Err(NcProblem::syntax(
-                "a cycle at an unknown position: expected a move to X, Y and Z before it",
-            ));
-        };
-        let (w, abc) = (self.modes.plane[2], self.track.abc);
-        let modal = self.track.feed;
-        self.track.calls()?;
-        let [u, v, _] = self.modes.plane;
-        let mut aside = [0.0; 2];
-        let go = |reader: &mut Self, aside: [f64; 2], height: f64, feed: Option<Option<f64>>| {
-            let mut target = here;
-            target[u] += aside[0];
-            target[v] += aside[1];
-            target[w] = height;
-            if let Some(feed) = feed {
-                reader.track.feed = feed.or(modal);
-            }
-            reader.track.line(target, abc, feed.is_none())
-        };
-        let above = cycle.surface + cycle.clearance;
-        let bottom = cycle.surface + cycle.depth;
-        go(self, aside, above, None)?;
-        let rest = |reader: &mut Self| match cycle.dwell > 0.0 {
-            true => reader.track.event(EventKind::Dwell { seconds: cycle.dwell }),
-            false => Ok(()),
-        };
-        let into = Some(cycle.feed);
-        match cycle.kind {
-            Kind::Back {
-                aside: beside,
-                below,
-                up,
-                feed,
-            } => {
-                let (below, up) = (cycle.surface + below, cycle.surface + up);
-                go(self, beside, above, into)?;
-                go(self, beside, below, into)?;
-                go(self, [0.0; 2], below, into)?;
-                go(self, [0.0; 2], up, Some(feed))?;
-                rest(self)?;
-                go(self, [0.0; 2], below, into)?;
-                go(self, beside, below, into)?;
-                go(self, beside, above, into)?;
-            }
-            Kind::Helix {
-                radius,
-                pitch,
-                counter_clockwise,
-            } => {
-                // To the wall above the surface, down in whole turns and a part of one, once more around at the bottom.
-                self.track.feed = cycle.feed.or(modal);
-                go(self, [radius, 0.0], above, into)?;
-                let turns = (above - bottom) / pitch;
-                if !(turns <= MOST_PECKS as f64) {
-                    return Err(NcProblem::value("the number of turns of one hole", turns, "smaller"));
-                }
-                let sense = if counter_clockwise { 1.0 } else { -1.0 };
-                let (sin, cos) = (sense * turns * TAU).sin_cos();
-                let mut end = here;
-                end[u] += radius * cos;
-                end[v] += radius * sin;
-                end[w] = bottom;
-                for (turns, height) in [(turns, above), (1.0, bottom)] {
-                    let mut start = here;
-                    start[w] = height;
-                    let arc = CircularArc {
-                        start,
-                        end,
-                        plane: self.modes.plane,
-                        centre: [here[u], here[v]],
-                        sweep: sense * turns * TAU,
-                    };
-                    self.track.circle(&arc, abc)?;
-                }
-                go(self, [0.0; 2], bottom, into)?;
-            }
-            Kind::Drill | Kind::Bore { .. } => {
-                let mut infeed = cycle.infeed.unwrap_or(-cycle.depth);
-                let mut at = cycle.surface;
-                let mut pecks = 0;
-                loop {
-                    at = (at - infeed).max(bottom);
-                    go(self, aside, at, into)?;
-                    pecks += 1;
-                    if at <= bottom {
-                        break;
-                    }
-                    if pecks >= MOST_PECKS {
-                        return Err(NcProblem::value("the number of infeeds of one hole", pecks, "smaller"));
-                    }
-                    go(self, aside, above, None)?;
-                    go(self, aside, (at + cycle.clearance.min(1.0)).min(above), None)?;
-                    infeed = (infeed - cycle.decrement).max(1e-3);
-                }
-                rest(self)?;
-                if let Kind::Bore { aside: Some(away) } = cycle.kind {
-                    aside = away;
-                    go(self, aside, bottom, into)?;
-                }
-            }
+            )),
         }
-        if cycle.feeds_out {
-            go(self, aside, above, Some(cycle.out.or(cycle.feed)))?;
-        } else if !matches!(cycle.kind, Kind::Back { .. }) {
-            go(self, aside, above, None)?;
-        }
-        go(self, [0.0; 2], above, None)?;
-        let second = cycle.surface + cycle.second;
-        if second > above {
-            go(self, [0.0; 2], second, None)?;
-        }
-        self.track.feed = modal;
-        self.track.returns();
-        Ok(())
     }
 }

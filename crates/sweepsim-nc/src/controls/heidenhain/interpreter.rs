@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::cycles::Cycle;
 use super::line::{self, Line};
 use super::planes::Frames;
 use super::unit::Unit;
 use super::values::Parameters;
 use crate::controls::run::{self, BlockIndex, Library, Running};
-use crate::drive::{ProgramPlace, Sense, Track};
+use crate::drive::{HoleCycle, ProgramPlace, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
@@ -61,7 +60,7 @@ pub(super) struct Reader<'a> {
     pub modes: Modes,
     /// The last move's end is made by the RND or CHF that follows.
     pub rounded: bool,
-    pub cycle: Option<Cycle>,
+    pub cycle: Option<HoleCycle>,
     pub uncertain: bool,
     pub(super) library: Library<'a>,
     pub(super) options: &'a ReadOptions,

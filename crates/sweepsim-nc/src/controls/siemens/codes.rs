@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::contours::PoleFrom;
-use super::cycles::Cycle;
+use super::cycles::hole_cycle;
 use super::frames::Operation;
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
@@ -174,12 +174,15 @@ impl Reader<'_> {
                     _ => None,
                 })
                 .collect();
-            let cycle = Cycle::new(name, &numbers, self.modes.unit()).map_err(here)?;
+            let cycle = hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?;
             if modal {
                 self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
                 return Ok(());
             }
-            return self.drill(&cycle).map_err(here);
+            return self
+                .track
+                .hole_here(&cycle, self.modes.plane, self.uncertain)
+                .map_err(here);
         }
         if !self.knows(name) {
             return Err(here(NcProblem::unsupported(

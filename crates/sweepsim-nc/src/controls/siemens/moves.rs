@@ -131,7 +131,10 @@ impl Reader<'_> {
         if linear.contains(&true) || polar || rotary {
             match self.modes.modal_call.clone() {
                 Some((depth, _)) if depth != self.depth() => {}
-                Some((_, Modal::Cycle(cycle))) => self.drill(&cycle).map_err(here)?,
+                Some((_, Modal::Cycle(cycle))) => self
+                    .track
+                    .hole_here(&cycle, self.modes.plane, self.uncertain)
+                    .map_err(here)?,
                 Some((_, Modal::Program(name, values))) => self.pending = Some((name, values, 1)),
                 None => {}
             }

@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::contours::PoleFrom;
-use super::cycles::Cycle;
 use super::frames::Operation;
 use super::interpreter::Reader;
 use super::language::block::Item;
 use super::language::expression::{self, Expression, Kind, Value};
-use crate::drive::{CornerShape, Corners};
+use crate::drive::{CornerShape, Corners, HoleCycle};
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcProblem};
@@ -68,7 +67,7 @@ pub(super) struct Modes {
 /// What `MCALL` calls.
 #[derive(Clone, Debug)]
 pub(super) enum Modal {
-    Cycle(Cycle),
+    Cycle(HoleCycle),
     Program(String, Vec<Value>),
 }
 

@@ -6,29 +6,11 @@ use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::{Values, Variables};
 use crate::model::event::EventKind;
-use crate::text::error::NcProblem;
 
 /// Longer texts for the operator are cut.
 const LONGEST: usize = 500;
 
 impl Reader {
-    /// The tool rests.
-    pub(crate) fn rest(&mut self, seconds: f64) -> Result<(), NcProblem> {
-        if !(0.0..=1e9).contains(&seconds) {
-            return Err(NcProblem::value(
-                "the time of a dwell",
-                seconds,
-                "a number of seconds from 0 on",
-            ));
-        }
-        self.trace([Canonical::Dwell(seconds)]);
-        if seconds > 0.0 {
-            self.track.event(EventKind::Dwell { seconds })
-        } else {
-            Ok(())
-        }
-    }
-
     /// A comment that speaks to the operator: `MSG,…`, `DEBUG,…`, `PRINT,…`.
     pub(crate) fn message(&mut self, text: &str) {
         let Some((kind, text)) = text.split_once(',') else {

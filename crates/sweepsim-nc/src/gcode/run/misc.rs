@@ -100,7 +100,7 @@ impl Reader {
             Some(word) => word.value,
             None => block.get('X').unwrap_or(0.0),
         };
-        self.rest(seconds)
+        self.track.rest(seconds)
     }
 
     /// Settings of Grbl and TinyG.

@@ -58,6 +58,8 @@ impl Reader {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
         }
         let mut step = self.misc(block)?;
+        (self.track.feed, self.track.feed_mode) = (self.modes.feed, self.modes.feed_mode);
+        self.track.exact_stop = self.modes.exact_stop || self.modes.stops_here;
         let whole = |problem| (problem, block.all());
         self.switch_control().map_err(whole)?;
         if plan.dwell {

@@ -1,8 +1,8 @@
 //! Drilling cycles: G73, G74, G76 and G81 to G89.
 //!
-//! Sources: *LinuxCNC G-code reference, Canned Cycles*; Fanuc B-63944EN, *Canned cycle for drilling*. Each is expanded into the moves that
-//! the control makes.
+//! Sources: *LinuxCNC G-code reference, Canned Cycles*; Fanuc B-63944EN, *Canned cycle for drilling*.
 
+use crate::drive::{HoleCycle, HolePlace, HoleWork, Pecks, WayOut};
 use crate::gcode::codes::{MotionMode, SpindleTurning};
 use crate::gcode::modes::CycleWords;
 use crate::gcode::run::interpreter::Reader;
@@ -15,20 +15,8 @@ use crate::text::error::NcProblem;
 /// How far from the last depth G83 returns in rapid, and how far G73 retracts, in mm: LinuxCNC's 0.010 inch. Fanuc and Haas keep it in a
 /// setting; it concerns moves where the tool has been before.
 const PECK_CLEARANCE: f64 = 0.254;
-/// Pecks of one hole, at most.
-const MOST_PECKS: f64 = 1e5;
 /// Repeats of one block, at most.
 const MOST_REPEATS: f64 = 1e6;
-
-/// One hole, in the program's coordinates along the axis of the tool.
-#[derive(Clone, Copy)]
-struct Hole {
-    /// The place in the plane, with any coordinate along the axis.
-    place: [f64; 3],
-    plane: f64,
-    bottom: f64,
-    clear: f64,
-}
 
 impl Reader {
     /// A cycle begins: nothing of the one before stays, but the height it started from.
@@ -112,24 +100,25 @@ impl Reader {
         let initial = *self.modes.cycle.initial.get_or_insert(at[w]);
         let plane = if absolute { plane } else { at[w] + plane };
         let bottom = if absolute { bottom } else { plane + bottom };
-        if cycle == 87 {
-            return self.back_bore(at, words, [plane, bottom], &sticky, repeats as u32);
-        }
-        if bottom > plane {
+        let back = cycle == 87;
+        let hole = if back {
+            self.back_boring([at[w], plane, bottom], &sticky)?
+        } else if bottom <= plane {
+            let clear = match self.modes.retract_to_plane {
+                true => plane,
+                false => initial.max(plane),
+            };
+            self.hole(cycle, [plane, bottom, clear], &sticky)?
+        } else {
             return Err(NcProblem::value(
                 format!("the plane R of {name}"),
                 plane / unit,
                 format!("above the bottom, {} in {letter}", bottom / unit),
             ));
-        }
-        let clear = if self.modes.retract_to_plane {
-            plane
-        } else {
-            initial.max(plane)
         };
-        if at[w] < plane {
+        if at[w] < plane && !back {
             at[w] = plane;
-            self.straight(at, true)?;
+            self.straight(at)?;
         }
         for repeat in 0..repeats as u32 {
             for k in [u, v] {
@@ -139,19 +128,15 @@ impl Reader {
                     _ => {}
                 }
             }
-            self.straight(at, true)?;
-            if at[w] != plane {
-                at[w] = plane;
-                self.straight(at, true)?;
+            self.straight(at)?;
+            if back {
+                self.turn_spindle(SpindleTurning::Stopped)?;
             }
-            let hole = Hole {
-                place: at,
-                plane,
-                bottom,
-                clear,
-            };
-            self.hole(cycle, hole, &sticky)?;
-            at[w] = clear;
+            self.track.hole(&hole, HolePlace::in_plane(self.modes.plane, at))?;
+            if matches!(cycle, 76 | 86..=88) {
+                self.turn_spindle(self.modes.spindle)?;
+            }
+            at[w] = hole.end;
         }
         Ok(())
     }
@@ -191,81 +176,60 @@ impl Reader {
         Ok(self.track.known())
     }
 
+    /// A rapid.
+    fn straight(&mut self, end: [f64; 3]) -> Result<(), NcProblem> {
+        let stroke = self.stroke_to(end, self.track.abc, true);
+        self.give(stroke)
+    }
+
     /// Back boring: down to R beside the axis of the hole, across, up to Z, and out again.
     ///
     /// Sources: Fanuc B-63944EN, *Back boring cycle (G87)*, and *Shift specification by I_J_* (Series 15i, bit SIJ); Haas 96-8000, G77; Weihong's G87 has the same order.
-    fn back_bore(
-        &mut self,
-        mut at: [f64; 3],
-        words: [Option<f64>; 3],
-        [deep, top]: [f64; 2],
-        sticky: &CycleWords,
-        repeats: u32,
-    ) -> Result<(), NcProblem> {
-        let [u, v, w] = self.modes.plane;
-        let Some(shift) = sticky.shift else {
+    fn back_boring(&self, [initial, deep, up]: [f64; 3], words: &CycleWords) -> Result<HoleCycle, NcProblem> {
+        let Some(aside) = words.shift else {
             return Err(NcProblem::unsupported(
                 "back boring with a shift by Q is",
                 "its direction is a setting of the machine; expected the shift by I and J",
             ));
         };
-        let unit = self.unit();
-        if top < deep {
+        if up < deep {
             return Err(NcProblem::value(
                 "the plane R of a back boring",
-                deep / unit,
-                format!("below Z, {}", top / unit),
+                deep / self.unit(),
+                format!("below Z, {}", up / self.unit()),
             ));
         }
-        let initial = at[w];
-        for repeat in 0..repeats {
-            for k in [u, v] {
-                match words[k] {
-                    Some(word) if !self.modes.absolute => at[k] += word,
-                    Some(word) if repeat == 0 => at[k] = word,
-                    _ => {}
-                }
-            }
-            let place = |height: f64, aside: bool| {
-                let mut point = at;
-                point[w] = height;
-                if aside {
-                    point[u] += shift[0];
-                    point[v] += shift[1];
-                }
-                point
-            };
-            self.straight(place(initial, false), true)?;
-            self.turn_spindle(SpindleTurning::Stopped)?;
-            self.straight(place(initial, true), false)?;
-            self.straight(place(deep, true), true)?;
-            self.straight(place(deep, false), false)?;
-            self.turn_spindle(SpindleTurning::Clockwise)?;
-            self.straight(place(top, false), false)?;
-            self.rest_for(sticky.dwell.unwrap_or(0.0))?;
-            self.turn_spindle(SpindleTurning::Stopped)?;
-            self.straight(place(top, true), false)?;
-            self.straight(place(initial, true), true)?;
-            self.straight(place(initial, false), false)?;
-            self.turn_spindle(self.modes.spindle)?;
-        }
-        Ok(())
+        let stop = self.spindle(SpindleTurning::Stopped);
+        Ok(HoleCycle {
+            start: initial,
+            bottom: deep,
+            end: initial,
+            work: HoleWork::Back {
+                up,
+                feed: None,
+                rapid: true,
+            },
+            aside,
+            at_bottom: vec![self.dwell_of(words), stop],
+            at_return: vec![self.spindle(SpindleTurning::Clockwise)],
+            ..HoleCycle::default()
+        })
     }
 
-    fn straight(&mut self, end: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
-        let stroke = self.stroke_to(end, self.track.abc, rapid);
-        self.give(stroke)
-    }
-
-    /// One hole, from the plane R.
-    fn hole(&mut self, cycle: u8, hole: Hole, words: &CycleWords) -> Result<(), NcProblem> {
-        let w = self.modes.plane[2];
-        let at = |height: f64| {
-            let mut point = hole.place;
-            point[w] = height;
-            point
+    /// A hole from the plane R.
+    fn hole(
+        &mut self,
+        cycle: u8,
+        [plane, bottom, clear]: [f64; 3],
+        words: &CycleWords,
+    ) -> Result<HoleCycle, NcProblem> {
+        let mut hole = HoleCycle {
+            start: plane,
+            bottom,
+            end: clear,
+            ..HoleCycle::default()
         };
-        let (bottom, clear, plane) = (at(hole.bottom), at(hole.clear), at(hole.plane));
+        let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), self.dwell_of(words));
         match cycle {
             73 | 83 => {
                 let peck = words.peck.unwrap_or(0.0);
@@ -274,109 +238,66 @@ impl Reader {
                         "G{cycle} without Q: expected the depth of a peck"
                     )));
                 };
-                if (hole.plane - hole.bottom) / peck > MOST_PECKS {
-                    return Err(NcProblem::value(
-                        "the number of pecks",
-                        (hole.plane - hole.bottom) / peck,
-                        "at most 100000",
-                    ));
-                }
-                let mut depth = hole.plane - peck;
-                while depth > hole.bottom {
-                    self.straight(at(depth), false)?;
-                    if cycle == 83 {
-                        self.straight(plane, true)?;
-                    }
-                    self.straight(at((depth + PECK_CLEARANCE).min(hole.plane)), true)?;
-                    depth -= peck;
-                }
-                self.straight(bottom, false)?;
-                self.straight(clear, true)
+                hole.work = HoleWork::Pecks(Pecks {
+                    first: plane - peck,
+                    infeed: peck,
+                    clears: cycle == 83,
+                    above: PECK_CLEARANCE,
+                    ..Pecks::default()
+                });
             }
             74 | 84 => {
-                self.straight(bottom, false)?;
                 let turning = self.modes.spindle;
-                self.turn_spindle(SpindleTurning::Stopped)?;
-                self.turn_spindle(match turning {
+                let other = match turning {
                     SpindleTurning::CounterClockwise => SpindleTurning::Clockwise,
                     _ => SpindleTurning::CounterClockwise,
-                })?;
-                self.rest_for(words.dwell.unwrap_or(0.0))?;
-                self.straight(plane, false)?;
-                self.turn_spindle(SpindleTurning::Stopped)?;
-                self.turn_spindle(turning)?;
-                if hole.clear == hole.plane {
-                    Ok(())
-                } else {
-                    self.straight(clear, true)
-                }
-            }
-            85 | 89 => {
-                self.straight(bottom, false)?;
-                if cycle == 89 {
-                    self.rest_for(words.dwell.unwrap_or(0.0))?;
-                }
-                if self.fanuc() && hole.clear != hole.plane {
-                    self.straight(plane, false)?;
-                    return self.straight(clear, true);
-                }
-                self.straight(clear, false)
+                };
+                hole.at_bottom = vec![stop.clone(), self.spindle(other), dwell];
+                hole.at_return = vec![stop, self.spindle(turning)];
+                hole.out = WayOut::FeedToStart(None);
             }
             76 => {
-                self.straight(bottom, false)?;
-                self.rest_for(words.dwell.unwrap_or(0.0))?;
-                self.turn_spindle(SpindleTurning::Stopped)?;
-                let [u, v, _] = self.modes.plane;
-                let shift = words.shift.unwrap_or_default();
                 if words.shift.is_none() && words.peck.is_some() {
                     self.track
                         .note("the direction of G76's shift Q is a setting of the machine: read as no shift");
                 }
-                let aside = |mut point: [f64; 3]| {
-                    point[u] += shift[0];
-                    point[v] += shift[1];
-                    point
+                hole.aside = words.shift.unwrap_or_default();
+                hole.at_bottom = vec![dwell, stop];
+            }
+            82 => hole.at_bottom = vec![dwell],
+            85 | 89 => {
+                if cycle == 89 {
+                    hole.at_bottom = vec![dwell];
+                }
+                hole.out = match self.fanuc() {
+                    true => WayOut::FeedToStart(None),
+                    false => WayOut::Feed,
                 };
-                if shift != [0.0; 2] {
-                    self.straight(aside(bottom), false)?;
-                }
-                self.straight(aside(clear), true)?;
-                if shift != [0.0; 2] {
-                    self.straight(clear, true)?;
-                }
-                self.turn_spindle(self.modes.spindle)
             }
-            _ => {
-                self.straight(bottom, false)?;
-                if matches!(cycle, 82 | 86 | 88) {
-                    self.rest_for(words.dwell.unwrap_or(0.0))?;
-                }
-                if matches!(cycle, 86 | 88) {
-                    self.turn_spindle(SpindleTurning::Stopped)?;
-                }
-                if cycle == 88 {
-                    self.track.event(EventKind::Stop)?;
-                }
-                self.straight(clear, true)?;
-                if matches!(cycle, 86 | 88) {
-                    self.turn_spindle(self.modes.spindle)?;
-                }
-                Ok(())
-            }
+            86 => hole.at_bottom = vec![dwell, stop],
+            88 => hole.at_bottom = vec![dwell, stop, EventKind::Stop],
+            _ => {}
         }
+        Ok(hole)
     }
 
     /// P of cycles: seconds, but milliseconds on Fanuc and Haas.
-    fn rest_for(&mut self, p: f64) -> Result<(), NcProblem> {
-        self.rest(if self.fanuc() { p / 1000.0 } else { p })
+    fn dwell_of(&self, words: &CycleWords) -> EventKind {
+        let p = words.dwell.unwrap_or(0.0);
+        let seconds = if self.fanuc() { p / 1000.0 } else { p };
+        EventKind::Dwell { seconds }
     }
 
-    pub(crate) fn turn_spindle(&mut self, turning: SpindleTurning) -> Result<(), NcProblem> {
+    fn spindle(&self, turning: SpindleTurning) -> EventKind {
         let rpm = self.modes.speed;
-        self.track.event(EventKind::Spindle(match turning {
+        EventKind::Spindle(match turning {
             SpindleTurning::Stopped => Spindle::Stopped,
             SpindleTurning::Clockwise => Spindle::Clockwise { rpm },
             SpindleTurning::CounterClockwise => Spindle::CounterClockwise { rpm },
-        }))
+        })
+    }
+
+    pub(crate) fn turn_spindle(&mut self, turning: SpindleTurning) -> Result<(), NcProblem> {
+        self.track.event(self.spindle(turning))
     }
 }

@@ -53,17 +53,7 @@ impl Reader {
     }
 
     pub(crate) fn stroke_to(&self, end: [f64; 3], abc: [f64; 3], rapid: bool) -> Stroke {
-        Stroke {
-            end,
-            abc,
-            rapid,
-            bend: None,
-            plane: self.modes.plane,
-            place: self.track.place,
-            feed: if rapid { None } else { self.modes.feed },
-            feed_mode: self.modes.feed_mode,
-            exact_stop: self.modes.exact_stop || self.modes.stops_here,
-        }
+        self.track.stroke(end, abc, rapid, None, self.modes.plane)
     }
 
     /// X and Y of G16 are a radius and an angle.
