@@ -2,7 +2,7 @@
 
 use super::arcs::PendingArc;
 use super::frames::{Vector, norm};
-use super::reader::{Reader, numbers};
+use super::reader::Reader;
 use super::statement::Statement;
 use crate::drive::Arc;
 use crate::text::error::{Located, NcProblem};
@@ -32,7 +32,7 @@ impl Reader<'_> {
     }
 
     pub fn circle(&mut self, statement: &Statement) -> Result<(), Located> {
-        let list = numbers(statement);
+        let list = statement.numbers();
         if let Some(word) = statement.items.iter().find(|item| item.number.is_none()) {
             let problem = NcProblem::value("a number of CIRCLE", format!("{:?}", word.text), "a number");
             return Err((problem, word.bytes.clone()));

@@ -6,13 +6,9 @@ use super::statement::Statement;
 use crate::model::tool::{CutterKind, ToolDescription};
 use crate::text::error::NcProblem;
 
-fn numbers(statement: &Statement) -> Vec<f64> {
-    statement.items.iter().filter_map(|item| item.number).collect()
-}
-
 /// `CUTTER/d, r, e, f, a, b, h`: the seven parameters, or the first ones of them.
 pub(super) fn cutter(statement: &Statement, unit: f64) -> Result<Option<ToolDescription>, NcProblem> {
-    let numbers = numbers(statement);
+    let numbers = statement.numbers();
     let length = |index: usize| numbers.get(index).map_or(0.0, |value| value * unit);
     let angle = |index: usize| numbers.get(index).copied().unwrap_or(0.0);
     let Some(&d) = numbers.first() else {
@@ -77,7 +73,7 @@ fn seven(apt: Apt) -> ToolDescription {
 /// `TLDATA/MILL, diameter, lower radius, length, taper, tip`; `TLDATA/DRILL, MILL, diameter, radius, length, point angle, flute length`.
 pub(super) fn tool_data(statement: &Statement, unit: f64) -> Result<ToolDescription, NcProblem> {
     let kind = statement.items.first().map_or("", |item| item.text);
-    let numbers = numbers(statement);
+    let numbers = statement.numbers();
     let length = |index: usize| numbers.get(index).map(|value| value * unit);
     let angle = |index: usize| numbers.get(index).copied().unwrap_or(0.0);
     let positive = |index: usize| length(index).filter(|value| *value > 0.0);

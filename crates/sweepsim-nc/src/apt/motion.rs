@@ -2,7 +2,7 @@
 
 use super::cycles::Cycle;
 use super::frames::{Vector, add, dot, norm, sub};
-use super::reader::{Reader, numbers};
+use super::reader::Reader;
 use super::statement::Statement;
 use super::words;
 use crate::drive::HolePlace;
@@ -40,7 +40,7 @@ impl Reader<'_> {
             };
             return Err((problem, word.bytes.clone()));
         }
-        let list = numbers(statement);
+        let list = statement.numbers();
         let whole = |problem| (problem, statement.bytes.clone());
         let triples: Vec<Vector> = list.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
         let is_axis = |v: Vector| (norm(v) - 1.0).abs() < 0.1;
@@ -90,7 +90,7 @@ impl Reader<'_> {
     }
 
     pub fn from(&mut self, statement: &Statement) -> Result<(), Located> {
-        let list = numbers(statement);
+        let list = statement.numbers();
         if !(list.len() == 3 || list.len() == 6) || statement.items.iter().any(|item| item.number.is_none()) {
             let problem = NcProblem::syntax("FROM without coordinates: expected x, y, z, and perhaps the tool axis");
             return Err((problem, statement.bytes.clone()));
@@ -108,7 +108,7 @@ impl Reader<'_> {
 
     pub fn godlta(&mut self, statement: &Statement) -> Result<(), Located> {
         let whole = |problem| (problem, statement.bytes.clone());
-        let list = numbers(statement);
+        let list = statement.numbers();
         let Some(tip) = self.track.known() else {
             return Err(whole(NcProblem::syntax(
                 "GODLTA without a start: expected a GOTO before it",

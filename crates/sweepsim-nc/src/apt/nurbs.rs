@@ -43,7 +43,7 @@ impl Nurbs {
                 ..Self::default()
             };
         }
-        let numbers: Vec<f64> = statement.items.iter().filter_map(|item| item.number).collect();
+        let numbers = statement.numbers();
         if statement.is("KNOT") {
             self.knots.extend(numbers);
         } else if statement.is("CNTRL") {

@@ -111,24 +111,17 @@ impl Reader<'_> {
 
     /// The unit until the file says one: as its feeds suggest, or as given.
     fn default_unit(&mut self, text: &str) {
-        let word = |statement: &Statement, words: [&str; 2]| words.iter().any(|word| statement.has(word));
         let mut inch = self.options.inch;
         for statement in Statements::of(text) {
             if statement.is("UNITS") || statement.is("UNIT") {
                 break;
             }
-            if statement.is("FEDRAT") && word(&statement, ["MMPM", "MMPR"]) {
-                self.track
-                    .notes
-                    .add(statement.line, "no units are given: millimetres, as in the feeds");
-                inch = false;
-                break;
-            }
-            if statement.is("FEDRAT") && word(&statement, ["IPM", "IPR"]) {
-                self.track
-                    .notes
-                    .add(statement.line, "no units are given: inches, as in the feeds");
-                inch = true;
+            let metric = statement.has("MMPM") || statement.has("MMPR");
+            if statement.is("FEDRAT") && (metric || statement.has("IPM") || statement.has("IPR")) {
+                let unit = if metric { "millimetres" } else { "inches" };
+                let note = format!("no units are given: {unit}, as in the feeds");
+                self.track.notes.add(statement.line, note);
+                inch = !metric;
                 break;
             }
         }
@@ -253,7 +246,7 @@ impl Reader<'_> {
             );
         }
         if let Some((_, what)) = REFUSED.iter().find(|(word, _)| upper == *word) {
-            let nothing = upper == "TRANS" && numbers(statement).iter().all(|value| *value == 0.0);
+            let nothing = upper == "TRANS" && statement.numbers().iter().all(|value| *value == 0.0);
             if !nothing {
                 return fail(
                     what,
@@ -273,9 +266,4 @@ impl Reader<'_> {
         }
         Ok(())
     }
-}
-
-/// The numbers of a list.
-pub(super) fn numbers(statement: &Statement) -> Vec<f64> {
-    statement.items.iter().filter_map(|item| item.number).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::cycles::feed;
 use super::frames::frame;
-use super::reader::{Reader, numbers};
+use super::reader::Reader;
 use super::statement::{Item, Statement};
 use crate::machines::WorkFrame;
 use crate::model::event::{Coolant, EventKind, Spindle};
@@ -20,7 +20,7 @@ impl Reader<'_> {
                 self.track.note(note);
             }
         } else if statement.is("CSYS") {
-            let numbers: Option<[f64; 12]> = numbers(statement).try_into().ok();
+            let numbers: Option<[f64; 12]> = statement.numbers().try_into().ok();
             if numbers.is_some_and(|numbers| !is_identity(&numbers)) {
                 let note = "$$-> CSYS: the coordinates are those of the machine coordinate system, as Creo writes them";
                 self.track.note(note);
@@ -80,7 +80,7 @@ impl Reader<'_> {
     }
 
     pub fn msys(&mut self, statement: &Statement) -> Result<(), NcProblem> {
-        let numbers: [f64; 9] = numbers(statement).try_into().map_err(|list: Vec<f64>| {
+        let numbers: [f64; 9] = statement.numbers().try_into().map_err(|list: Vec<f64>| {
             let expected = "9: the origin, the x axis and the y axis";
             NcProblem::value("the number of numbers in MSYS", list.len(), expected)
         })?;
@@ -103,7 +103,7 @@ impl Reader<'_> {
     /// `CSYS` says where the frame of an operation is, `TRNTYP` in which frame the coordinates are.
     pub fn frame_of_coordinates(&mut self, statement: &Statement) -> Result<(), NcProblem> {
         if statement.is("CSYS") {
-            self.csys = numbers(statement).try_into().ok();
+            self.csys = statement.numbers().try_into().ok();
         } else {
             self.world = Some(statement.has("WORLD"));
         }

@@ -50,6 +50,11 @@ impl Statement<'_> {
         self.items.iter().find_map(|item| item.number)
     }
 
+    /// The numbers of the list.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.items.iter().filter_map(|item| item.number).collect()
+    }
+
     /// The first number after a word.
     pub fn after(&self, word: &str) -> Option<f64> {
         let at = self.items.iter().position(|item| item.is(word))?;

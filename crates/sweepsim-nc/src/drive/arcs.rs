@@ -1,64 +1,12 @@
 //! Arcs of the tip, in any frame.
 
-use nalgebra::{Rotation3, Unit, Vector3};
 use sweepsim_motion::{Course, Move, TipArc, Turning};
 
+use super::circular_arc::Arc;
 use super::driver::Coordinates;
 use super::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
-
-/// The most chords per arc.
-const MOST_CHORDS: f64 = 1e6;
-
-/// An arc or helix in the coordinates of the frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arc {
-    pub start: [f64; 3],
-    pub end: [f64; 3],
-    pub centre: [f64; 3],
-    /// A coordinate axis or another unit vector.
-    pub normal: [f64; 3],
-    /// In radians, right-handed about the normal.
-    pub sweep: f64,
-}
-
-impl Arc {
-    /// From the axis to a point, across it and along it.
-    fn radial(&self, point: [f64; 3]) -> (Vector3<f64>, f64) {
-        let normal = Vector3::from(self.normal);
-        let out = Vector3::from(point) - Vector3::from(self.centre);
-        let height = normal.dot(&out);
-        (out - normal * height, height)
-    }
-
-    /// The number of chords that stay within `tolerance` (mm) of the arc.
-    pub fn chords(&self, tolerance: f64) -> Result<usize, String> {
-        let radius = self.radial(self.start).0.norm().max(self.radial(self.end).0.norm());
-        // A chord over 2h leaves r (1 − cos h) = 2 r sin²(h/2).
-        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
-        let chords = (self.sweep.abs() / (2.0 * half)).ceil().max(1.0);
-        if chords <= MOST_CHORDS {
-            Ok(chords as usize)
-        } else {
-            Err(format!(
-                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
-            ))
-        }
-    }
-
-    /// The point at `s` in `[0, 1]`; at 1 exactly the end. If the radii at the ends differ a little, the radius changes linearly between them.
-    pub fn at(&self, s: f64) -> [f64; 3] {
-        if s >= 1.0 {
-            return self.end;
-        }
-        let ((from, low), (to, high)) = (self.radial(self.start), self.radial(self.end));
-        let normal = Vector3::from(self.normal);
-        let growth = 1.0 + s * (to.norm() / from.norm() - 1.0);
-        let out = Rotation3::from_axis_angle(&Unit::new_normalize(normal), s * self.sweep) * from * growth;
-        (Vector3::from(self.centre) + out + normal * (low + s * (high - low))).into()
-    }
-}
 
 impl Track {
     /// A feed move of the tool along an arc from where it is, while it turns into a direction of the part's frame.

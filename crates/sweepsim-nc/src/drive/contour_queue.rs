@@ -2,30 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::arcs::Arc;
-use super::circular_arc::CircularArc;
+use super::circular_arc::{Arc, CircularArc};
 use super::contour::{
-    ArcPlane, Bend, Compensation, CompensationSettings, Corner, Item, Outcome, ProgramPlace, Stroke, blend,
+    ArcPlane, Bend, Compensation, CompensationSettings, Contour, Corner, Item, Outcome, Stroke, blend,
 };
 use super::track::Track;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
-
-/// What is between the program and the tool.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Contour {
-    compensation: Option<Compensation>,
-    /// Where the tool is, if not at the programmed point: beside a contour, and until the move after it.
-    pub actual: Option<[f64; 3]>,
-    /// A move whose end becomes a corner with the next one, and where it starts.
-    waiting: Option<([f64; 3], Stroke, Corner)>,
-    /// What happens after that move.
-    events: Vec<(EventKind, ProgramPlace)>,
-    /// A corner at the end of the next move.
-    next: Option<Corner>,
-    /// The direction in which the last move ended.
-    direction: Option<[f64; 3]>,
-}
 
 impl Track {
     /// Whether the next move starts beside its programmed start: after the end of cutter compensation.
@@ -345,12 +328,5 @@ impl Track {
         (self.place, self.feed, self.feed_mode) = (place, feed, mode);
         self.exact_stop = exact_stop;
         result
-    }
-}
-
-impl Contour {
-    /// Whether a move does not simply go from one programmed point to the next.
-    fn is_busy(&self) -> bool {
-        self.compensation.is_some() || self.actual.is_some() || self.waiting.is_some() || self.next.is_some()
     }
 }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use super::arcs::Arc;
+use super::circular_arc::Arc;
 use super::contour::ArcPlane;
 use super::track::Track;
 use crate::model::event::EventKind;

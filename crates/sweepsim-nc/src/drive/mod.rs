@@ -6,7 +6,6 @@ mod circular_arc;
 mod contour;
 mod contour_queue;
 mod driver;
-mod excursions;
 mod holes;
 mod rapids;
 mod recorded;
@@ -17,8 +16,7 @@ mod turns;
 pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
-pub(crate) use arcs::Arc;
-pub(crate) use circular_arc::{CircularArc, radii_differ, radius_slack};
+pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
 pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
 pub(crate) use driver::{Coordinates, Sense};
 pub(crate) use holes::{HoleCycle, HolePlace, HoleWork, Pecks, WayOut};

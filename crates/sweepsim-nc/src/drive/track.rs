@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 use sweepsim_motion::{Course, Move, Pose, Turning};
 
-use super::contour::ProgramPlace;
-use super::contour_queue::Contour;
+use super::contour::{Contour, ProgramPlace};
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
 use crate::machines::{Machine, Position, WorkFrame};

@@ -300,10 +300,11 @@ pub(crate) enum Misc {
 }
 
 /// How the spindle turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum SpindleTurning {
     Clockwise,
     CounterClockwise,
+    #[default]
     Stopped,
 }
 

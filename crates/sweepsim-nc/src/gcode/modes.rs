@@ -20,7 +20,7 @@ pub(crate) struct CycleWords {
 }
 
 /// Modal state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Modes {
     pub motion: Option<MotionMode>,
     pub plane: ArcPlane,
@@ -57,27 +57,10 @@ pub(crate) struct Modes {
 impl Modes {
     pub(crate) fn new(inch: bool) -> Self {
         Self {
-            motion: None,
             plane: [0, 1, 2],
             absolute: true,
-            absolute_centres: false,
             inch,
-            feed_mode: FeedMode::PerMinute,
-            exact_stop: false,
-            stops_here: false,
-            feed: None,
-            speed: None,
-            spindle: SpindleTurning::Stopped,
-            pitch: None,
-            curve_tangent: None,
-            retract_to_plane: false,
-            cycle: CycleWords::default(),
-            polar: false,
-            rotation: None,
-            scaling: None,
-            mirror: [None; 3],
-            tilt: None,
-            dynamic: false,
+            ..Self::default()
         }
     }
 

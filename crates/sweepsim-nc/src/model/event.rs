@@ -57,10 +57,11 @@ pub enum EventKind {
 }
 
 /// The state of the spindle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Spindle {
     /// It stands still (`M5`).
+    #[default]
     Stopped,
     /// It turns clockwise, seen from the spindle towards the tool's tip (`M3`).
     Clockwise {

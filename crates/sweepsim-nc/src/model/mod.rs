@@ -3,6 +3,7 @@
 pub(crate) mod event;
 pub(crate) mod kept_arcs;
 pub(crate) mod names;
+pub(crate) mod pose;
 pub(crate) mod poses;
 pub(crate) mod positions;
 pub(crate) mod program;

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use sweepsim_motion::{Move, PackedMoves, PackedPoses, PackedRows, Pose};
 
-use super::program::{FeedMode, ProgramPose};
+use super::pose::{FeedMode, ProgramPose};
 
 /// Shorter programs are kept as they are.
 const SHORT: usize = 1 << 12;

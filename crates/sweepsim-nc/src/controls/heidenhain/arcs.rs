@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::interpreter::Reader;
 use super::line::Line;
-use super::moves::Words;
+use super::moves::MoveWords;
 use crate::drive::{CircularArc, Corner, CornerShape, ProgramPlace};
 use crate::text::error::{Located, NcProblem};
 
@@ -110,7 +110,7 @@ impl Reader<'_> {
     pub(super) fn arc_block(
         &mut self,
         kind: &str,
-        words: &Words,
+        words: &MoveWords,
         target: [f64; 3],
         abc: [f64; 3],
     ) -> Result<(), NcProblem> {

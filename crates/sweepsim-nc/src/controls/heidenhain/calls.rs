@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::interpreter::{Level, LevelKind, Reader};
 use super::line::Line;
-use super::unit::Unit;
+use super::routine::Routine;
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::{Located, NcProblem};
 
@@ -22,9 +22,9 @@ impl Reader<'_> {
     }
 
     /// `CALL LBL 1`, `CALL LBL 1 REP 2`.
-    pub(super) fn call_label(&mut self, line: &Line, unit: usize, index: usize) -> Result<(), Located> {
+    pub(super) fn call_label(&mut self, line: &Line, routine: usize, index: usize) -> Result<(), Located> {
         let label = line.word(2).to_owned();
-        let from = self.units[unit].labels.get(&label).copied().ok_or_else(|| {
+        let from = self.routines[routine].labels.get(&label).copied().ok_or_else(|| {
             (
                 NcProblem::syntax(format!("there is no LBL {label} in this program")),
                 line.span(2),
@@ -55,13 +55,20 @@ impl Reader<'_> {
                 }
             }
         };
-        self.push(Level { unit, next: from, kind }, line)
+        self.push(
+            Level {
+                routine,
+                next: from,
+                kind,
+            },
+            line,
+        )
     }
 
     pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
         let name = line.word(2).trim_matches('"').trim_end_matches(".H").to_owned();
-        let unit = match self.names.get(&name) {
-            Some(&unit) => unit,
+        let routine = match self.names.get(&name) {
+            Some(&routine) => routine,
             None => {
                 let Some((file, text)) = (self.library)(&name) else {
                     let problem = NcProblem::unsupported(
@@ -70,22 +77,22 @@ impl Reader<'_> {
                     );
                     return Err((problem, line.all()));
                 };
-                let unit = Unit::new(self.track.add_file(file), Rc::new(text));
-                self.units.push(unit);
-                self.names.insert(name, self.units.len() - 1);
-                self.units.len() - 1
+                let routine = Routine::new(self.track.add_file(file), Rc::new(text));
+                self.routines.push(routine);
+                self.names.insert(name, self.routines.len() - 1);
+                self.routines.len() - 1
             }
         };
         let level = Level {
-            unit,
+            routine,
             next: 0,
             kind: LevelKind::Program,
         };
         self.push(level, line)
     }
 
-    pub(super) fn jump(&mut self, label: &str, unit: usize) -> Result<(), NcProblem> {
-        let to = self.units[unit].labels.get(label).copied();
+    pub(super) fn jump(&mut self, label: &str, routine: usize) -> Result<(), NcProblem> {
+        let to = self.routines[routine].labels.get(label).copied();
         let to = to.ok_or_else(|| NcProblem::syntax(format!("there is no LBL {label} in this program")))?;
         // A jump out of a repeated section ends it.
         while let Some(Level {

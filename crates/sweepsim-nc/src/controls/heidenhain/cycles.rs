@@ -15,15 +15,9 @@ impl Reader<'_> {
     pub(super) fn cycle_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         if line.word(1) == "CALL" {
-            match line.word(2) {
-                "PAT" | "POS" => {
-                    let problem = NcProblem::unsupported(
-                        format!("CYCL CALL {} is", line.word(2)),
-                        "expected L with M99 at each hole",
-                    );
-                    return Err(whole(problem));
-                }
-                _ => {}
+            if let word @ ("PAT" | "POS") = line.word(2) {
+                let found = format!("CYCL CALL {word} is");
+                return Err(whole(NcProblem::unsupported(found, "expected L with M99 at each hole")));
             }
             self.codes(line)?;
             return self.drill().map_err(whole);

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::frames::Frames;
 use super::line::{self, Line};
-use super::planes::Frames;
-use super::unit::Unit;
+use super::routine::Routine;
 use super::values::Parameters;
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{HoleCycle, ProgramPlace, Sense, Track};
@@ -18,7 +18,7 @@ use crate::text::error::{Located, NcError, NcProblem};
 
 /// A program, subprogram or repeated section on its way.
 pub(super) struct Level {
-    pub(super) unit: usize,
+    pub(super) routine: usize,
     pub(super) next: usize,
     pub(super) kind: LevelKind,
 }
@@ -36,6 +36,7 @@ pub(super) enum LevelKind {
 }
 
 /// What stays in effect until another word changes it.
+#[derive(Default)]
 pub(super) struct Modes {
     pub inch: bool,
     pub plane: [usize; 3],
@@ -64,7 +65,7 @@ pub(super) struct Reader<'a> {
     pub uncertain: bool,
     pub(super) library: Library<'a>,
     pub(super) options: &'a ReadOptions,
-    pub(super) units: Vec<Unit>,
+    pub(super) routines: Vec<Routine>,
     pub(super) names: BTreeMap<String, usize>,
     pub(super) stack: Vec<Level>,
     pub(super) ended: bool,
@@ -82,23 +83,17 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
             inch: options.inch,
             plane: [0, 1, 2],
             tip_control: options.machine.tip_control,
-            shortest: false,
-            centre: None,
-            compensated: None,
-            radii: BTreeMap::new(),
-            oversize: 0.0,
-            speed: None,
-            spindle: Spindle::Stopped,
+            ..Modes::default()
         },
         rounded: false,
         cycle: None,
         uncertain: false,
         library,
         options,
-        units: vec![Unit::new(0, Rc::clone(text))],
+        routines: vec![Routine::new(0, Rc::clone(text))],
         names: BTreeMap::new(),
         stack: vec![Level {
-            unit: 0,
+            routine: 0,
             next: 0,
             kind: LevelKind::Program,
         }],
@@ -130,25 +125,25 @@ impl Running for Reader<'_> {
                     continue;
                 }
             }
-            if level.next >= self.units[level.unit].len() {
+            if level.next >= self.routines[level.routine].len() {
                 self.back();
                 continue;
             }
             let index = level.next;
             level.next += 1;
-            let unit = level.unit;
-            self.track.place.file = self.units[unit].file;
+            let routine = level.routine;
+            self.track.place.file = self.routines[routine].file;
             self.track.place.line = index + 1;
-            if !self.units[unit].block(index).tokens.is_empty() {
-                return Some((unit, index));
+            if !self.routines[routine].block(index).tokens.is_empty() {
+                return Some((routine, index));
             }
         }
         None
     }
 
-    fn run(&mut self, (unit, index): BlockIndex) -> Result<(), Located> {
-        let line = self.units[unit].block(index);
-        self.block(&line, unit, index)
+    fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
+        let line = self.routines[routine].block(index);
+        self.block(&line, routine, index)
     }
 
     fn doubt(&mut self) {
@@ -156,13 +151,13 @@ impl Running for Reader<'_> {
         self.rounded = false;
     }
 
-    fn line_of(&self, (unit, index): BlockIndex) -> (usize, usize, &str) {
-        let unit = &self.units[unit];
-        (unit.file, index + 1, unit.text(index))
+    fn line_of(&self, (routine, index): BlockIndex) -> (usize, usize, &str) {
+        let routine = &self.routines[routine];
+        (routine.file, index + 1, routine.text(index))
     }
 
-    fn whole(&self, (unit, index): BlockIndex) -> std::ops::Range<usize> {
-        self.units[unit].block(index).all()
+    fn whole(&self, (routine, index): BlockIndex) -> std::ops::Range<usize> {
+        self.routines[routine].block(index).all()
     }
 }
 
@@ -213,9 +208,9 @@ impl Reader<'_> {
 
     fn following_lines(&self) -> impl Iterator<Item = (usize, Rc<Line>)> {
         let level = self.stack.last();
-        let lines = level.map(|level| (&self.units[level.unit], level.next));
-        lines.into_iter().flat_map(|(unit, next)| {
-            let blocks = (next..unit.len()).map(|index| (index + 1, unit.block(index)));
+        let lines = level.map(|level| (&self.routines[level.routine], level.next));
+        lines.into_iter().flat_map(|(routine, next)| {
+            let blocks = (next..routine.len()).map(|index| (index + 1, routine.block(index)));
             blocks.filter(|(_, block)| !block.tokens.is_empty())
         })
     }
@@ -225,7 +220,7 @@ impl Reader<'_> {
         if self.modes.inch { 25.4 } else { 1.0 }
     }
 
-    fn block(&mut self, line: &Line, unit: usize, index: usize) -> Result<(), Located> {
+    fn block(&mut self, line: &Line, routine: usize, index: usize) -> Result<(), Located> {
         if line.skipped {
             if self.options.block_delete {
                 return Ok(());
@@ -240,7 +235,7 @@ impl Reader<'_> {
                     self.track.program.title = line
                         .tokens
                         .get(2)
-                        .map(|token| self.units[unit].text(index)[token.span.clone()].to_owned());
+                        .map(|token| self.routines[routine].text(index)[token.span.clone()].to_owned());
                 }
             }
             "END" if line.word(1) == "PGM" => self.back(),
@@ -260,11 +255,11 @@ impl Reader<'_> {
                 }
             }
             "LBL" => {}
-            "CALL" if line.word(1) == "LBL" => self.call_label(line, unit, index)?,
+            "CALL" if line.word(1) == "LBL" => self.call_label(line, routine, index)?,
             "CALL" if line.word(1) == "PGM" => self.call_program(line)?,
             "FN" => {
                 if let Some(label) = self.parameters.function(line)? {
-                    self.jump(&label, unit).map_err(whole)?;
+                    self.jump(&label, routine).map_err(whole)?;
                 }
             }
             word if word.starts_with("FN") => {
@@ -280,7 +275,7 @@ impl Reader<'_> {
                     },
                 );
                 if let Some(label) = self.parameters.function(&apart)? {
-                    self.jump(&label, unit).map_err(whole)?;
+                    self.jump(&label, routine).map_err(whole)?;
                 }
             }
             word if word.starts_with('Q') => self.parameters.formula(line)?,

@@ -12,12 +12,13 @@
 mod arcs;
 mod calls;
 mod cycles;
+mod frames;
 mod interpreter;
 mod line;
 mod moves;
 mod planes;
+mod routine;
 mod settings;
-mod unit;
 mod values;
 
 pub use super::run::Library;

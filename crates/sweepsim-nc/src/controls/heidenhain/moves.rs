@@ -8,7 +8,7 @@ use crate::text::error::{Located, NcProblem};
 
 /// The words of a move.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Words {
+pub(super) struct MoveWords {
     /// X, Y, Z and A, B, C: value, and whether it is incremental.
     pub(super) axes: [Option<(f64, bool)>; 6],
     /// PR and PA.
@@ -26,8 +26,8 @@ pub(super) struct Words {
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Reader<'_> {
-    fn words(&mut self, line: &Line) -> Result<Words, Located> {
-        let mut words = Words::default();
+    fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
+        let mut words = MoveWords::default();
         let mut index = 1;
         while index < line.tokens.len() {
             let token = &line.tokens[index];
@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 
     /// Where a block ends, in the frame; `None` if that is not known yet.
-    fn target(&mut self, words: &Words, kind: &str, line: &Line) -> Result<Option<[f64; 3]>, Located> {
+    fn target(&mut self, words: &MoveWords, kind: &str, line: &Line) -> Result<Option<[f64; 3]>, Located> {
         let whole = |problem| (problem, line.all());
         let cuts = !words.rapid;
         let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP");
@@ -253,7 +253,7 @@ impl Reader<'_> {
         Ok(Some([x, y, z]))
     }
 
-    fn centre_block(&mut self, words: &Words) -> Result<(), NcProblem> {
+    fn centre_block(&mut self, words: &MoveWords) -> Result<(), NcProblem> {
         let [u, v, _] = self.modes.plane;
         let mut centre = [0.0; 2];
         let given = words.axes[u].is_some() || words.axes[v].is_some();
@@ -279,7 +279,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn line_block(&mut self, words: &Words, target: [f64; 3], abc: [f64; 3], line: &Line) -> Result<(), Located> {
+    fn line_block(&mut self, words: &MoveWords, target: [f64; 3], abc: [f64; 3], line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         if line.word(0) == "LN" && words.tool.iter().any(Option::is_some) {
             let vector = words.tool.map(|c| c.unwrap_or(0.0));
@@ -307,7 +307,7 @@ impl Reader<'_> {
     }
 
     /// `RL` and `RR`: from this move on.
-    fn compensate(&mut self, left: bool, words: &Words, kind: &str) -> Result<(), NcProblem> {
+    fn compensate(&mut self, left: bool, words: &MoveWords, kind: &str) -> Result<(), NcProblem> {
         if self.modes.compensated == Some(left) && self.track.compensates() {
             return Ok(());
         }

@@ -7,60 +7,6 @@ use super::line::Line;
 use crate::machines::WorkFrame;
 use crate::text::error::{Located, NcProblem};
 
-/// The frames in effect.
-#[derive(Clone, Debug)]
-pub(super) struct Frames {
-    /// `CYCL DEF 7`, before the plane is tilted and after.
-    shift: [f64; 3],
-    tilted_shift: [f64; 3],
-    /// `PLANE`.
-    tilt: Option<WorkFrame>,
-    /// `CYCL DEF 8`, 10, 11.
-    mirror: [bool; 3],
-    rotation: f64,
-    scale: f64,
-    preset: Option<f64>,
-}
-
-impl Default for Frames {
-    fn default() -> Self {
-        Self {
-            shift: [0.0; 3],
-            tilted_shift: [0.0; 3],
-            tilt: None,
-            mirror: [false; 3],
-            rotation: 0.0,
-            scale: 1.0,
-            preset: None,
-        }
-    }
-}
-
-impl Frames {
-    pub fn tilted(&self) -> bool {
-        self.tilt.is_some()
-    }
-
-    /// Whether arcs and lengths are turned or scaled within the plane.
-    fn total(&self, plane: [usize; 3]) -> WorkFrame {
-        let mut frame = WorkFrame::shifted(self.shift);
-        if let Some(tilt) = &self.tilt {
-            frame = frame.then(tilt).then(&WorkFrame::shifted(self.tilted_shift));
-        }
-        let mirror = self.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 });
-        if self.mirror.contains(&true) {
-            frame = frame.then(&WorkFrame::scaled(mirror));
-        }
-        if self.rotation != 0.0 {
-            frame = frame.then(&WorkFrame::turned(plane[2], self.rotation));
-        }
-        if self.scale != 1.0 {
-            frame = frame.then(&WorkFrame::scaled([self.scale; 3]));
-        }
-        frame
-    }
-}
-
 /// The cycles of frames, by their first part (`7.1` is part 1 of 7).
 pub(super) fn is_frame_cycle(number: u32) -> bool {
     matches!(number, 7 | 8 | 10 | 11 | 247)
@@ -144,7 +90,7 @@ impl Reader<'_> {
                 if !(factor > 0.0 && factor < 100.0) {
                     return Err(whole(NcProblem::value("SCL", factor, "above 0 and below 100")));
                 }
-                self.frames.scale = factor;
+                self.frames.scale = Some(factor);
             }
             _ => {
                 let preset = line
@@ -194,11 +140,8 @@ impl Reader<'_> {
                 .map_err(|problem| (problem, token.span.clone()))
         };
         let three = |reader: &Self, names: [&str; 3]| -> Result<[f64; 3], Located> {
-            Ok([
-                named(reader, names[0])?,
-                named(reader, names[1])?,
-                named(reader, names[2])?,
-            ])
+            let [x, y, z] = names.map(|name| named(reader, name));
+            Ok([x?, y?, z?])
         };
         let tilt = match line.word(1) {
             "SPATIAL" => Some(WorkFrame::spatial(three(self, ["SPA", "SPB", "SPC"])?)),
@@ -231,37 +174,25 @@ impl Reader<'_> {
                 return Err((problem, line.span(1)));
             }
         };
-        let turns = line
-            .tokens
-            .iter()
-            .any(|token| matches!(token.text.as_str(), "TURN" | "MOVE"));
         let has = |word: &str| line.tokens.iter().any(|token| token.text == word);
+        let turns = has("TURN") || has("MOVE");
         // MOVE moves the linear axes too, by a distance that the machine knows.
         let turn = has("TURN").then(|| has("FMAX") || has("MAX"));
         self.frames.tilted_shift = [0.0; 3];
-        match tilt {
-            Some(_) => {
-                // Coordinates become the tip's first: the frame is the part's.
-                self.frames.tilt = tilt;
-                self.control(self.modes.tip_control).map_err(whole)?;
-                self.apply_frames().map_err(whole)?;
-            }
-            None => {
-                self.frames.tilt = None;
-                self.apply_frames().map_err(whole)?;
-                if turns && self.track.turn_to([0.0, 0.0, 1.0], turn).map_err(whole)? {
-                    self.track.note("PLANE turns the rotary axes: the path breaks here");
-                }
-                self.control(self.modes.tip_control).map_err(whole)?;
-                return Ok(());
-            }
+        self.frames.tilt = tilt;
+        let mut normal = [0.0, 0.0, 1.0];
+        if tilt.is_some() {
+            // Coordinates become the tip's first: the frame is the part's.
+            self.control(self.modes.tip_control).map_err(whole)?;
+            normal = self.frames.total(self.modes.plane).direction(normal);
         }
-        if turns {
-            let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
-            if self.track.turn_to(normal, turn).map_err(whole)? {
-                self.track.note("PLANE turns the rotary axes: the path breaks here");
-            }
-        } else {
+        self.apply_frames().map_err(whole)?;
+        if turns && self.track.turn_to(normal, turn).map_err(whole)? {
+            self.track.note("PLANE turns the rotary axes: the path breaks here");
+        }
+        if tilt.is_none() {
+            self.control(self.modes.tip_control).map_err(whole)?;
+        } else if !turns {
             self.track
                 .note("PLANE … STAY turns no axis: the tool keeps its direction");
         }

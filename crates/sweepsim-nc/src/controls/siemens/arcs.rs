@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::interpreter::Reader;
-use super::words::{Meaning, Motion, Words};
+use super::state::Motion;
+use super::words::{Meaning, Words};
 use crate::drive::{Arc, CircularArc};
 use crate::text::error::{Located, NcProblem};
 
@@ -46,15 +47,16 @@ impl Reader<'_> {
                 }
             })
         };
+        let opening = words.plain("AR").filter(|_| words.plain("CR").is_none());
+        if let Some(angle) = opening.filter(|angle| !(*angle > 0.0 && *angle < 360.0)) {
+            return Err((NcProblem::value("AR", angle, "between 0 and 360"), words.span("AR")));
+        }
         let arc = if let Some(radius) = words.plain("CR") {
             CircularArc::with_radius(ends, plane, radius * unit, counter_clockwise, 1.0 + turns)
         } else if words.any(&centre_words).is_some() {
             let at = [centre(u).unwrap_or(start[u]), centre(v).unwrap_or(start[v])];
-            if let Some(angle) = words.plain("AR") {
+            if let Some(angle) = opening {
                 // An opening angle with a centre gives the end.
-                if !(angle > 0.0 && angle < 360.0) {
-                    return Err((NcProblem::value("AR", angle, "between 0 and 360"), words.span("AR")));
-                }
                 let sweep = if counter_clockwise { angle } else { -angle }.to_radians();
                 let (sin, cos) = sweep.sin_cos();
                 let from = [start[u] - at[0], start[v] - at[1]];
@@ -65,10 +67,7 @@ impl Reader<'_> {
             } else {
                 CircularArc::about(ends, plane, at, counter_clockwise, 1.0 + turns)
             }
-        } else if let Some(angle) = words.plain("AR") {
-            if !(angle > 0.0 && angle < 360.0) {
-                return Err((NcProblem::value("AR", angle, "between 0 and 360"), words.span("AR")));
-            }
+        } else if let Some(angle) = opening {
             let chord = (target[u] - start[u]).hypot(target[v] - start[v]);
             let radius = 0.5 * chord / (0.5 * angle.to_radians()).sin();
             let signed = if angle > 180.0 { -radius } else { radius };

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
-use super::contours::PoleFrom;
 use super::cycles::hole_cycle;
-use super::frames::Operation;
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
-use super::words::{Action, Modal, Motion, Words};
+use super::state::{Modal, Motion, Operation, PoleFrom};
+use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
@@ -100,34 +99,23 @@ impl Reader<'_> {
             "CIP" => self.modes.motion = Motion::Through,
             "CT" => self.modes.motion = Motion::Tangential,
             "MSG" => {
-                let text = arguments
-                    .and_then(|arguments| arguments.first())
-                    .and_then(Option::as_ref);
-                let text = text.map(|text| text.value(&|name| self.lookup(name))).transpose()?;
-                self.event(
-                    EventKind::Message(text.map_or_else(String::new, |text| text.text())),
-                    span.clone(),
-                )?;
+                let text = self.values(arguments)?.into_iter().next().flatten();
+                let text = text.map_or_else(String::new, |text| text.text());
+                self.event(EventKind::Message(text), span.clone())?;
             }
             "RET" => self.back(),
             "MCALL" => self.modes.modal_call = None,
             "CYCLE800" => {
                 // Names of swivel data are texts.
-                let values: Vec<Option<f64>> = arguments
-                    .unwrap_or(&[])
-                    .iter()
-                    .map(
-                        |argument| match argument.as_ref().map(|value| value.value(&|name| self.lookup(name))) {
-                            Some(Ok(Value::Number(number))) => Ok(Some(number)),
-                            Some(Ok(Value::Text(_))) => Ok(Some(0.0)),
-                            Some(Err(error)) => Err(error),
-                            None => Ok(None),
-                        },
-                    )
-                    .collect::<Result<_, _>>()?;
+                let number = |value: Value| match value {
+                    Value::Number(number) => number,
+                    Value::Text(_) => 0.0,
+                };
+                let values = self.values(arguments)?;
+                let values: Vec<_> = values.into_iter().map(|value| value.map(number)).collect();
                 self.swivel(&values).map_err(here)?;
             }
-            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" | "EXTCALL" if name != "EXTCALL" => {}
+            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
                 let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
@@ -136,6 +124,13 @@ impl Reader<'_> {
             _ => return self.call_or_cycle(name, arguments, words, span),
         }
         Ok(())
+    }
+
+    /// The values of arguments, as far as they are given.
+    fn values(&self, arguments: Option<&[Option<Expression>]>) -> Result<Vec<Option<Value>>, Located> {
+        let value = |argument: &Expression| argument.value(&|name| self.lookup(name));
+        let all = arguments.unwrap_or(&[]).iter();
+        all.map(|argument| argument.as_ref().map(value).transpose()).collect()
     }
 
     /// A cycle, a subprogram, or nothing known.
@@ -156,16 +151,7 @@ impl Reader<'_> {
             }
             _ => (name, arguments, self.modal_word(span)),
         };
-        let values = arguments
-            .unwrap_or(&[])
-            .iter()
-            .map(|argument| {
-                argument
-                    .as_ref()
-                    .map(|value| value.value(&|name| self.lookup(name)))
-                    .transpose()
-            })
-            .collect::<Result<Vec<Option<Value>>, _>>()?;
+        let values = self.values(arguments)?;
         if name.starts_with("CYCLE") {
             let numbers: Vec<Option<f64>> = values
                 .iter()

@@ -2,20 +2,10 @@
 
 use super::interpreter::Reader;
 use super::language::expression::Value;
-use super::words::{Action, Meaning, Motion, Words};
+use super::state::{Motion, PoleFrom};
+use super::words::{Action, Meaning, Words};
 use crate::drive::{CompensationSettings, Corner, CornerShape, Corners};
 use crate::text::error::{Located, NcProblem};
-
-/// What a pole is measured from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PoleFrom {
-    /// The last programmed position (`G110`).
-    Position,
-    /// The zero of the frame (`G111`).
-    Zero,
-    /// The last pole (`G112`).
-    Pole,
-}
 
 impl Reader<'_> {
     /// `G41` and `G42`, and `G40` in a block that does not move in the part's frame.
@@ -84,32 +74,22 @@ impl Reader<'_> {
         let unit = self.modes.unit();
         for word in &words.0 {
             let size = word.value * unit;
-            let made = match word.name.as_str() {
-                "RND" => Some(("RND", CornerShape::Round(size))),
-                "CHR" => Some(("CHR", CornerShape::Cut(size))),
-                "CHF" => Some(("CHF", CornerShape::Edge(size))),
-                "RNDM" => {
-                    self.modes.rounding = (size > 0.0).then_some(size);
-                    None
-                }
-                "FRC" => {
-                    action.corner_feed = Some(word.value).filter(|feed| *feed > 0.0);
-                    None
-                }
-                "FRCM" => {
-                    self.modes.corner_feed = Some(word.value).filter(|feed| *feed > 0.0);
-                    None
-                }
-                "DISC" => {
-                    self.modes.distortion = word.value;
-                    None
-                }
+            let feed = Some(word.value).filter(|feed| *feed > 0.0);
+            let mut made = None;
+            match word.name.as_str() {
+                "RND" => made = Some(("RND", CornerShape::Round(size))),
+                "CHR" => made = Some(("CHR", CornerShape::Cut(size))),
+                "CHF" => made = Some(("CHF", CornerShape::Edge(size))),
+                "RNDM" => self.modes.rounding = (size > 0.0).then_some(size),
+                "FRC" => action.corner_feed = feed,
+                "FRCM" => self.modes.corner_feed = feed,
+                "DISC" => self.modes.distortion = word.value,
                 "ANG" if word.value != 0.0 => {
                     let problem = NcProblem::unsupported("ANG is", "expected the contour by lines and arcs");
                     return Err((problem, word.span.clone()));
                 }
                 _ => continue,
-            };
+            }
             if size < 0.0 {
                 return Err((
                     NcProblem::value(word.name.clone(), word.value, "0 or positive"),

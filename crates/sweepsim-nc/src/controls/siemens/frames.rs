@@ -1,57 +1,11 @@
 //! Frames: work offsets, programmable frames and swivelled planes.
 
 use super::interpreter::Reader;
+use super::state::{FrameChange, Operation};
 use super::words::Words;
 use crate::drive::Coordinates;
 use crate::machines::WorkFrame;
 use crate::text::error::{Located, NcProblem};
-
-/// The frames in effect.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Frames {
-    /// The work offset whose frame is the part's: the first one that a move uses.
-    first: Option<u32>,
-    /// The one in effect (`G500` is 0).
-    pub active: u32,
-    /// Set by `CYCLE800`.
-    pub swivel: WorkFrame,
-    pub swivelled: bool,
-    /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
-    pub programmed: WorkFrame,
-}
-
-/// An operation on the programmable frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Operation {
-    pub kind: FrameChange,
-    /// Added to the frame rather than replacing it.
-    pub additive: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum FrameChange {
-    Shift,
-    Turn,
-    Scale,
-    Mirror,
-}
-
-impl Operation {
-    pub fn named(name: &str) -> Option<Self> {
-        let (kind, additive) = match name {
-            "TRANS" => (FrameChange::Shift, false),
-            "ATRANS" => (FrameChange::Shift, true),
-            "ROT" => (FrameChange::Turn, false),
-            "AROT" => (FrameChange::Turn, true),
-            "SCALE" => (FrameChange::Scale, false),
-            "ASCALE" => (FrameChange::Scale, true),
-            "MIRROR" => (FrameChange::Mirror, false),
-            "AMIRROR" => (FrameChange::Mirror, true),
-            _ => return None,
-        };
-        Some(Self { kind, additive })
-    }
-}
 
 impl Reader<'_> {
     /// Brings all frames into effect.

@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::frames::Frames;
-use super::language::block::{Item, Statement};
 use super::language::expression::{self, Expression, Value};
-use super::language::unit::{Unit, parts};
-use super::variables::MOST_VARIABLES;
-use super::words::Modes;
+use super::language::routine::{Routine, parts};
+use super::language::structures::{Item, Search, Statement};
+use super::state::{Frames, Modes};
 use crate::controls::run::{self, BlockIndex, DEEPEST_CALL, Library, Running};
 use crate::drive::{Sense, Track};
 use crate::model::names::Format;
@@ -17,6 +15,9 @@ use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{Located, NcError, NcProblem};
 use crate::text::kept::KeptText;
 use crate::tools::comments;
+
+/// The most variables.
+pub(super) const MOST_VARIABLES: usize = 100_000;
 
 /// A part of a program that is repeated.
 pub(super) struct Section {
@@ -28,7 +29,7 @@ pub(super) struct Section {
 
 /// A program or subprogram on its way.
 pub(super) struct Level {
-    pub(super) unit: usize,
+    pub(super) routine: usize,
     pub(super) next: usize,
     pub(super) locals: BTreeMap<String, Value>,
     pub(super) sections: Vec<Section>,
@@ -42,7 +43,7 @@ pub(super) struct Reader<'a> {
     pub frames: Frames,
     pub options: &'a ReadOptions,
     pub(super) library: Library<'a>,
-    pub(super) units: Vec<Unit>,
+    pub(super) routines: Vec<Routine>,
     pub(super) names: BTreeMap<String, usize>,
     pub(super) stack: Vec<Level>,
     pub(super) globals: BTreeMap<String, Value>,
@@ -61,7 +62,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         frames: Frames::default(),
         options,
         library,
-        units: Vec::new(),
+        routines: Vec::new(),
         names: BTreeMap::new(),
         stack: Vec::new(),
         globals: BTreeMap::new(),
@@ -82,9 +83,9 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
 }
 
 impl Level {
-    pub(super) fn new(unit: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
+    pub(super) fn new(routine: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
         Self {
-            unit,
+            routine,
             next: 0,
             locals,
             sections: Vec::new(),
@@ -115,35 +116,35 @@ impl Running for Reader<'_> {
                     continue;
                 }
             }
-            let unit = &self.units[level.unit];
-            if level.next >= unit.len() {
+            let routine = &self.routines[level.routine];
+            if level.next >= routine.len() {
                 self.back();
                 continue;
             }
             let index = level.next;
             level.next += 1;
-            self.track.place.file = unit.file;
-            self.track.place.line = unit.first_line() + index;
-            return Some((level.unit, index));
+            self.track.place.file = routine.file;
+            self.track.place.line = routine.first_line() + index;
+            return Some((level.routine, index));
         }
         None
     }
 
-    fn run(&mut self, (unit, index): BlockIndex) -> Result<(), Located> {
-        self.line(unit, index)
+    fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
+        self.line(routine, index)
     }
 
     fn doubt(&mut self) {
         self.uncertain = true;
     }
 
-    fn line_of(&self, (unit, index): BlockIndex) -> (usize, usize, &str) {
-        let unit = &self.units[unit];
-        (unit.file, unit.first_line() + index, unit.text(index))
+    fn line_of(&self, (routine, index): BlockIndex) -> (usize, usize, &str) {
+        let routine = &self.routines[routine];
+        (routine.file, routine.first_line() + index, routine.text(index))
     }
 
-    fn whole(&self, (unit, index): BlockIndex) -> std::ops::Range<usize> {
-        0..self.units[unit].text(index).len()
+    fn whole(&self, (routine, index): BlockIndex) -> std::ops::Range<usize> {
+        0..self.routines[routine].text(index).len()
     }
 }
 
@@ -152,8 +153,8 @@ impl Reader<'_> {
     pub(super) fn add(&mut self, text: Rc<String>, file: usize) {
         let text = Rc::new(KeptText::new(text));
         for (name, lines) in parts(&text) {
-            self.names.entry(name).or_insert(self.units.len());
-            self.units.push(Unit::new(file, Rc::clone(&text), lines));
+            self.names.entry(name).or_insert(self.routines.len());
+            self.routines.push(Routine::new(file, Rc::clone(&text), lines));
         }
     }
 
@@ -184,9 +185,9 @@ impl Reader<'_> {
     /// The text of the block that runs now.
     pub fn current_text(&self) -> &str {
         let Some(level) = self.stack.last() else { return "" };
-        let unit = &self.units[level.unit];
-        let index = self.track.place.line.saturating_sub(unit.first_line());
-        unit.text(index)
+        let routine = &self.routines[level.routine];
+        let index = self.track.place.line.saturating_sub(routine.first_line());
+        routine.text(index)
     }
 
     fn jump(&mut self, to: usize) {
@@ -204,8 +205,8 @@ impl Reader<'_> {
         }
     }
 
-    fn line(&mut self, unit: usize, index: usize) -> Result<(), Located> {
-        let line = self.units[unit].line(index)?;
+    fn line(&mut self, routine: usize, index: usize) -> Result<(), Located> {
+        let line = self.routines[routine].line(index)?;
         if line.skipped {
             if self.options.block_delete {
                 return Ok(());
@@ -219,47 +220,47 @@ impl Reader<'_> {
                     self.block(items)?;
                     if let Some((name, arguments, times)) = self.pending.take() {
                         self.call(&name, arguments, times)
-                            .map_err(|problem| (problem, self.whole((unit, index))))?;
+                            .map_err(|problem| (problem, self.whole((routine, index))))?;
                     }
                 }
             }
             Statement::Goto(search, label) => {
-                let to = self.units[unit].find(label, index, *search)?;
+                let to = self.routines[routine].find(label, index, *search)?;
                 self.jump(to);
             }
             Statement::IfGoto(condition, search, label) => {
                 if true_of(self, condition)? {
-                    let to = self.units[unit].find(label, index, *search)?;
+                    let to = self.routines[routine].find(label, index, *search)?;
                     self.jump(to);
                 }
             }
             Statement::If(condition) => {
-                let other = self.units[unit].partner(index, "ENDIF")?;
+                let other = self.routines[routine].partner(index, "ENDIF")?;
                 if !true_of(self, condition)? {
                     self.jump(other + 1);
                 }
             }
             Statement::Else => {
-                let end = self.units[unit].partner(index, "ENDIF")?;
+                let end = self.routines[routine].partner(index, "ENDIF")?;
                 self.jump(end + 1);
             }
             Statement::EndIf | Statement::Repeat | Statement::Loop | Statement::Declaration => {}
             Statement::While(condition) => {
-                let end = self.units[unit].partner(index, "ENDWHILE")?;
+                let end = self.routines[routine].partner(index, "ENDWHILE")?;
                 if !true_of(self, condition)? {
                     self.jump(end + 1);
                 }
             }
             Statement::For(first, last) => {
-                let end = self.units[unit].partner(index, "ENDFOR")?;
+                let end = self.routines[routine].partner(index, "ENDFOR")?;
                 self.block(first)?;
                 if self.count(first)? > self.number(last)? {
                     self.jump(end + 1);
                 }
             }
             Statement::EndLoop(kind) => {
-                let start = self.units[unit].partner(index, kind)?;
-                let begins = self.units[unit].line(start);
+                let start = self.routines[routine].partner(index, kind)?;
+                let begins = self.routines[routine].line(start);
                 let again = match begins.as_ref().map(|line| &line.statement) {
                     Ok(Statement::For(first, last)) => {
                         let next = self.count(first)? + 1.0;
@@ -279,31 +280,31 @@ impl Reader<'_> {
                 self.jump(again);
             }
             Statement::Until(condition) => {
-                let start = self.units[unit].partner(index, "REPEAT before it")?;
+                let start = self.routines[routine].partner(index, "REPEAT before it")?;
                 if !true_of(self, condition)? {
                     self.jump(start);
                 }
             }
             Statement::RepeatLabel { from, to, times, block } => {
-                let start = self.units[unit].find(from, index, super::language::block::Search::Backward)?;
+                let start = self.routines[routine].find(from, index, Search::Backward)?;
                 let end = match to {
-                    Some(to) => self.units[unit].find(to, start, super::language::block::Search::Forward)? + 1,
+                    Some(to) => self.routines[routine].find(to, start, Search::Forward)? + 1,
                     None if *block => start + 1,
                     None => index,
                 };
                 let times = times.as_ref().map_or(Ok(1.0), |times| self.number(times))?;
                 if !(times >= 0.0 && times.fract() == 0.0) {
                     let problem = NcProblem::value("the number of repeats P", times, "a whole number from 0 on");
-                    return Err((problem, self.whole((unit, index))));
+                    return Err((problem, self.whole((routine, index))));
                 }
                 if times >= 1.0 && start < end {
                     self.track
                         .calls()
-                        .map_err(|problem| (problem, self.whole((unit, index))))?;
+                        .map_err(|problem| (problem, self.whole((routine, index))))?;
                     if let Some(level) = self.stack.last_mut() {
                         if level.sections.len() > DEEPEST_CALL {
                             let problem = NcProblem::syntax("repeats within repeats: nested too deeply");
-                            return Err((problem, self.whole((unit, index))));
+                            return Err((problem, self.whole((routine, index))));
                         }
                         level.sections.push(Section {
                             from: start,

@@ -18,6 +18,7 @@ mod frames;
 mod interpreter;
 mod language;
 mod moves;
+mod state;
 mod variables;
 mod words;
 

@@ -1,7 +1,8 @@
 //! The moves of a block.
 
 use super::interpreter::Reader;
-use super::words::{Action, Meaning, Modal, Motion, Word, Words};
+use super::state::{Modal, Motion};
+use super::words::{Action, Meaning, Word, Words};
 use crate::machines::SHORTEST;
 use crate::text::error::{Located, NcProblem};
 
@@ -171,21 +172,9 @@ impl Reader<'_> {
                 Meaning::Incremental => now + word.value,
                 Meaning::Plain if !self.modes.absolute => now + word.value,
                 Meaning::Plain | Meaning::Absolute => word.value,
-                Meaning::Shortest => nearest,
-                Meaning::Positive => {
-                    if nearest < now {
-                        nearest + 360.0
-                    } else {
-                        nearest
-                    }
-                }
-                Meaning::Negative => {
-                    if nearest > now {
-                        nearest - 360.0
-                    } else {
-                        nearest
-                    }
-                }
+                Meaning::Positive if nearest < now => nearest + 360.0,
+                Meaning::Negative if nearest > now => nearest - 360.0,
+                Meaning::Shortest | Meaning::Positive | Meaning::Negative => nearest,
             };
             if !(abc[k].abs() < 1e9) {
                 return Err((

@@ -2,14 +2,11 @@
 
 use std::rc::Rc;
 
-use super::interpreter::{Level, Reader};
-use super::language::block::Item;
+use super::interpreter::{Level, MOST_VARIABLES, Reader};
 use super::language::expression::{self, Expression, Value};
+use super::language::structures::Item;
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::{Located, NcProblem};
-
-/// The most variables.
-pub(super) const MOST_VARIABLES: usize = 100_000;
 
 impl Reader<'_> {
     /// The counter of a FOR loop.
@@ -100,13 +97,13 @@ impl Reader<'_> {
             return false;
         };
         let index = self.track.add_file(file);
-        self.names.insert(name.to_owned(), self.units.len());
+        self.names.insert(name.to_owned(), self.routines.len());
         self.add(Rc::new(text), index);
         true
     }
 
     pub(super) fn call(&mut self, name: &str, arguments: Vec<Value>, times: usize) -> Result<(), NcProblem> {
-        let Some(&unit) = self.names.get(name) else {
+        let Some(&routine) = self.names.get(name) else {
             return Ok(());
         };
         if self.stack.len() > DEEPEST_CALL {
@@ -115,12 +112,12 @@ impl Reader<'_> {
             )));
         }
         let mut values = arguments.into_iter();
-        let locals = self.units[unit].parameters.iter().cloned();
+        let locals = self.routines[routine].parameters.iter().cloned();
         let locals = locals
             .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
             .collect();
         self.track.calls()?;
-        self.stack.push(Level::new(unit, locals, times));
+        self.stack.push(Level::new(routine, locals, times));
         Ok(())
     }
 }

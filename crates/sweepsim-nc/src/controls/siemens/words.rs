@@ -1,110 +1,14 @@
 //! The words of a block: codes, tools, and what they set.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::contours::PoleFrom;
-use super::frames::Operation;
 use super::interpreter::Reader;
-use super::language::block::Item;
 use super::language::expression::{self, Expression, Kind, Value};
-use crate::drive::{CornerShape, Corners, HoleCycle};
+use super::language::structures::Item;
+use super::state::{Operation, PoleFrom};
+use crate::drive::CornerShape;
 use crate::model::event::{Coolant, EventKind, Spindle};
-use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcProblem};
-
-/// How the tool moves, until another word says otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Motion {
-    Rapid,
-    Feed,
-    Arc {
-        counter_clockwise: bool,
-    },
-    /// An arc through an intermediate point (`CIP`).
-    Through,
-    /// An arc tangential to the last move (`CT`).
-    Tangential,
-}
-
-/// Modal state: in effect until another word changes it.
-pub(super) struct Modes {
-    pub motion: Motion,
-    /// The axes `[u, v, w]` of the plane: `u` to `v` is counter-clockwise.
-    pub plane: [usize; 3],
-    pub absolute: bool,
-    pub(super) inch: bool,
-    pub tip_control: bool,
-    /// `G60`: the axes rest after each block.
-    pub exact_stop: bool,
-    /// `D0`: without the tool's length.
-    pub(super) without_length: bool,
-    /// A cycle or subprogram at each position of the program at this depth.
-    pub modal_call: Option<(usize, Modal)>,
-    /// The tool's edge (`D`).
-    pub edge: u32,
-    /// An allowance of compensated contours (`OFFN`), in mm.
-    pub allowance: f64,
-    pub corners: Corners,
-    /// `DISC`.
-    pub distortion: f64,
-    /// `KONT`.
-    pub round_ends: bool,
-    /// The radius of `RNDM`, in mm, and the feed of `FRCM`.
-    pub rounding: Option<f64>,
-    pub corner_feed: Option<f64>,
-    /// The pole in the plane, in mm, and the last `AP` and `RP`.
-    pub pole: [f64; 2],
-    pub polar_angle: Option<f64>,
-    pub polar_radius: Option<f64>,
-    pub spindle: Spindle,
-    pub(super) speed: Option<f64>,
-    pub(super) selected: Option<u32>,
-    pub(super) tools: BTreeMap<String, u32>,
-    pub(super) uses_m6: bool,
-}
-
-/// What `MCALL` calls.
-#[derive(Clone, Debug)]
-pub(super) enum Modal {
-    Cycle(HoleCycle),
-    Program(String, Vec<Value>),
-}
-
-impl Modes {
-    pub fn new(options: &ReadOptions) -> Self {
-        Self {
-            motion: Motion::Rapid,
-            plane: [0, 1, 2],
-            absolute: true,
-            inch: options.inch,
-            tip_control: options.machine.tip_control,
-            exact_stop: false,
-            without_length: false,
-            modal_call: None,
-            edge: 1,
-            allowance: 0.0,
-            corners: Corners::Arcs,
-            distortion: 0.0,
-            round_ends: false,
-            rounding: None,
-            corner_feed: None,
-            pole: [0.0; 2],
-            polar_angle: None,
-            polar_radius: None,
-            spindle: Spindle::Stopped,
-            speed: None,
-            selected: None,
-            tools: BTreeMap::new(),
-            uses_m6: false,
-        }
-    }
-
-    /// Millimetres per unit of length.
-    pub fn unit(&self) -> f64 {
-        if self.inch { 25.4 } else { 1.0 }
-    }
-}
 
 /// How a value is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,10 @@ mod compensation;
 mod corner;
 mod joins;
 mod narrow;
+mod queue;
 mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
 pub(crate) use compensation::Compensation;
+pub(crate) use queue::Contour;
 pub(crate) use stroke::{ArcPlane, Bend, CompensationSettings, Corners, Item, ProgramPlace, Stroke};

@@ -47,9 +47,10 @@ pub(crate) enum Item {
 }
 
 /// How the tool goes round outside corners.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Corners {
     /// On an arc about the corner.
+    #[default]
     Arcs,
     /// On straight lines, no farther than a radius beyond the corner's normals (Fanuc).
     Lines,

@@ -1,5 +1,4 @@
 //! Texts with their lines and labels.
 
 pub(crate) mod keywords;
-pub(crate) mod labels;
 pub(crate) mod source;

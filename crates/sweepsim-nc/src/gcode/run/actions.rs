@@ -62,7 +62,6 @@ impl Reader {
                             reader.offsets.local[k] = words[k].unwrap_or(reader.offsets.local[k]);
                         }
                     }
-                    Ok(())
                 })?;
                 self.trace_offsets();
             }
@@ -98,10 +97,7 @@ impl Reader {
                 let axes = words.map(|word| !any || word.is_some());
                 let fresh = !self.track.has_moved();
                 let mut unknown = [false; 3];
-                self.reframe(|reader| {
-                    unknown = reader.offsets.cancel_shift(forget, axes, fresh);
-                    Ok(())
-                })?;
+                self.reframe(|reader| unknown = reader.offsets.cancel_shift(forget, axes, fresh))?;
                 for k in (0..3).filter(|&k| unknown[k]) {
                     self.track.xyz[k] = None;
                 }
@@ -114,7 +110,9 @@ impl Reader {
                         word.letter
                     )));
                 }
-                self.reframe(|reader| reader.offsets.restore_shift())?;
+                let mut restored = Ok(());
+                self.reframe(|reader| restored = reader.offsets.restore_shift())?;
+                restored?;
                 self.trace_offsets();
             }
             code => self.transform(code, block)?,
@@ -126,10 +124,7 @@ impl Reader {
         if index != self.offsets.active {
             self.refuse_compensation("a change of the work offset")?;
         }
-        self.reframe(|reader| {
-            reader.offsets.active = index;
-            Ok(())
-        })?;
+        self.reframe(|reader| reader.offsets.active = index)?;
         self.trace_offsets();
         Ok(())
     }
@@ -153,10 +148,7 @@ impl Reader {
                     self.check_angles(block, "G10 L20")?;
                     return self.place_here(p, words);
                 }
-                if turns(block) {
-                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
-                }
-                if fanuc && block.has('R') {
+                if turns(block) || fanuc && block.has('R') {
                     return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
                 }
                 let turn = block.get('R');
@@ -169,7 +161,7 @@ impl Reader {
                     if fanuc && l == 2 && p == 0 {
                         let external = reader.offsets.external;
                         reader.offsets.external = std::array::from_fn(|k| added(external[k], words[k]));
-                        return Ok(());
+                        return;
                     }
                     let index = match (p, l) {
                         (p, 20) => EXTENDED + p,
@@ -182,7 +174,6 @@ impl Reader {
                         turn: turn.unwrap_or(before.turn),
                     };
                     reader.offsets.place(index, placed);
-                    Ok(())
                 })?;
                 self.trace_offsets();
                 Ok(())
@@ -235,10 +226,7 @@ impl Reader {
                 placed.origin[k] = known(here[k])? - from[k];
             }
         }
-        self.reframe(|reader| {
-            reader.offsets.place(index, placed);
-            Ok(())
-        })?;
+        self.reframe(|reader| reader.offsets.place(index, placed))?;
         self.trace_offsets();
         Ok(())
     }
@@ -300,10 +288,7 @@ impl Reader {
             }
             _ => return Ok(()),
         };
-        self.reframe(|reader| {
-            change(reader);
-            Ok(())
-        })
+        self.reframe(change)
     }
 
     /// G28 and G30: over the programmed point to the machine's home.

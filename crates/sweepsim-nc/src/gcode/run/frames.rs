@@ -57,9 +57,9 @@ impl Reader {
     }
 
     /// Changes offsets; the machine stays where it is.
-    pub(crate) fn reframe(&mut self, change: impl FnOnce(&mut Self) -> Result<(), NcProblem>) -> Result<(), NcProblem> {
+    pub(crate) fn reframe(&mut self, change: impl FnOnce(&mut Self)) -> Result<(), NcProblem> {
         let (before, length) = (self.frame_map(), self.length.offset);
-        change(self)?;
+        change(self);
         let after = self.frame_map();
         let mut xyz = self.track.xyz;
         if before != after || length != self.length.offset {

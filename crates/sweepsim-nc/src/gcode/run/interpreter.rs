@@ -173,7 +173,7 @@ impl Reader {
             controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
             strict: options.controller.is_some(),
             modal_macro: None,
-            levels: vec![CallLevel::main()],
+            levels: vec![CallLevel::default()],
             sources: vec![Rc::new(Source::new(0, Rc::clone(input.text)))],
             files: input.file.map(Path::to_owned).into_iter().collect(),
             folders: folders(input.file, &options.subprograms),

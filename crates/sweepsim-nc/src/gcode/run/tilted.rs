@@ -91,10 +91,7 @@ impl Reader {
         if tilt.is_some() {
             self.set_coordinates(true)?;
         }
-        self.reframe(|reader| {
-            reader.modes.tilt = tilt;
-            Ok(())
-        })?;
+        self.reframe(|reader| reader.modes.tilt = tilt)?;
         if tilt.is_none() {
             self.set_coordinates(false)?;
         }

@@ -121,10 +121,7 @@ impl Reader {
 
     /// Puts a length offset into effect: the machine stays where it is.
     pub(crate) fn use_length(&mut self, offset: [f64; 3]) -> Result<(), NcProblem> {
-        self.reframe(|reader| {
-            reader.length.offset = offset;
-            Ok(())
-        })?;
+        self.reframe(|reader| reader.length.offset = offset)?;
         let length = self.length.offset.map(|x| x / self.unit());
         self.trace([Canonical::ToolOffset(length)]);
         Ok(())

@@ -5,7 +5,7 @@
 
 use super::block::Target;
 use super::cursor::{Cursor, Digits};
-use super::functions::{Operator, apply, call};
+use super::functions::{Operator, Value, apply, call};
 use crate::text::error::{Located, NcProblem};
 
 /// The variables of a program, as an expression reads them.
@@ -37,9 +37,6 @@ impl Variables for NoVariables {
         false
     }
 }
-
-/// A value: `None` is that of a variable without one, on controls that know such (Fanuc's `#0`).
-pub(crate) type Value = Option<f64>;
 
 /// Brackets within brackets, at most.
 const DEEPEST: usize = 60;

@@ -1,7 +1,9 @@
 //! Operators and functions of expressions.
 
-use super::expression::Value;
 use crate::text::error::NcProblem;
+
+/// A value: `None` is that of a variable without one, on controls that know such (Fanuc's `#0`).
+pub(crate) type Value = Option<f64>;
 
 /// Numbers closer than this are equal to `EQ` and `NE`, as on LinuxCNC.
 const EQUAL: f64 = 1e-6;

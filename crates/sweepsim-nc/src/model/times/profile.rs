@@ -138,14 +138,14 @@ impl Profile {
     }
 
     /// Some stretches, and the one before them.
-    fn stretches(&self, numbers: Range<usize>) -> Part {
+    fn stretches(&self, numbers: Range<usize>) -> Stretches {
         let from = numbers.start.saturating_sub(1);
         let packed = self.packed.range(from..numbers.end.min(self.packed.len()).max(from));
         let open = |number: usize| number.saturating_sub(self.packed.len());
         let mut stretches = Vec::with_capacity(numbers.end - from);
         stretches.extend(packed.map(Stretch::of_row));
         stretches.extend(&self.open[open(from)..open(numbers.end)]);
-        Part {
+        Stretches {
             stretches,
             first: numbers.start - from,
         }
@@ -158,13 +158,13 @@ fn parts(count: usize) -> impl DoubleEndedIterator<Item = Range<usize>> + ExactS
 }
 
 /// Stretches that follow one another.
-struct Part {
+struct Stretches {
     stretches: Vec<Stretch>,
     /// 1 if there is another one before them, which is no part of them.
     first: usize,
 }
 
-impl Part {
+impl Stretches {
     /// Each stretch and the one before it.
     fn pairs(&self) -> impl DoubleEndedIterator<Item = (Option<&Stretch>, &Stretch)> {
         let numbered = self.stretches.iter().enumerate().skip(self.first);

@@ -17,7 +17,7 @@ const UPRIGHT: f64 = 1e-12;
 
 /// Where the tool is, in coordinates.
 #[derive(Clone, Copy)]
-struct Place {
+struct ToolPosition {
     pose: Pose,
     xyz: [f64; 3],
     aim: Aim,
@@ -34,7 +34,7 @@ pub(super) struct Plan<'a> {
     /// Millimetres per unit of feeds.
     unit: f64,
     tool: Option<u32>,
-    at: Option<Place>,
+    at: Option<ToolPosition>,
     pub lost: Vec<String>,
 }
 
@@ -145,10 +145,10 @@ impl<'a> Plan<'a> {
         number(value, self.options.decimals).parse().unwrap_or(value)
     }
 
-    fn place(&self, index: usize, pose: &Pose) -> Result<Place, GcodeError> {
+    fn place(&self, index: usize, pose: &Pose) -> Result<ToolPosition, GcodeError> {
         let round = |point: [f64; 3]| point.map(|value| self.rounded(value));
         let Some(machine) = self.machine else {
-            return Ok(Place {
+            return Ok(ToolPosition {
                 pose: *pose,
                 xyz: round(pose.tip()),
                 aim: if self.vectors {
@@ -171,7 +171,7 @@ impl<'a> Plan<'a> {
                 line: self.program.poses[index].line,
                 error,
             })?;
-        Ok(Place {
+        Ok(ToolPosition {
             pose: *pose,
             xyz: round(if self.options.tip_control {
                 pose.tip()
@@ -204,8 +204,8 @@ impl<'a> Plan<'a> {
     fn straight(
         &mut self,
         pose: &ProgramPose,
-        from: Option<Place>,
-        to: Place,
+        from: Option<ToolPosition>,
+        to: ToolPosition,
         part: f64,
         language: &mut impl Language,
     ) {
@@ -244,8 +244,8 @@ impl<'a> Plan<'a> {
         &mut self,
         index: usize,
         arc: &TipArc,
-        from: Place,
-        to: Place,
+        from: ToolPosition,
+        to: ToolPosition,
         language: &mut impl Language,
     ) -> Result<(), GcodeError> {
         let pose = &self.program.poses[index];

@@ -1,77 +1,9 @@
 //! Blocks: words, assignments, keywords and control structures.
 
-use std::ops::Range;
-
 use super::cursor::{Cursor, without_comment};
 use super::expression::Expression;
-use super::structures::{define, repeat};
+use super::structures::{Item, Search, Statement, define, repeat};
 use crate::text::error::{Located, NcProblem};
-
-/// A part of a block.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Item {
-    /// An address with its value: `X10`, `X=R1+2`, `CR=5`, `I=AC(3)`.
-    Word {
-        name: String,
-        value: Expression,
-        span: Range<usize>,
-    },
-    /// A variable gets a value.
-    Set {
-        name: String,
-        indices: Vec<Expression>,
-        value: Expression,
-        span: Range<usize>,
-    },
-    /// A keyword or a call, with its arguments: those left out are `None`.
-    Key {
-        name: String,
-        arguments: Option<Vec<Option<Expression>>>,
-        span: Range<usize>,
-    },
-}
-
-/// Where a jump looks for its label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Search {
-    Forward,
-    Backward,
-    /// Forward first, then from the beginning.
-    Anywhere,
-}
-
-/// What a line does.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Statement {
-    Block(Vec<Item>),
-    Goto(Search, String),
-    /// A jump under a condition.
-    IfGoto(Expression, Search, String),
-    If(Expression),
-    Else,
-    EndIf,
-    While(Expression),
-    For(Vec<Item>, Expression),
-    Loop,
-    Repeat,
-    Until(Expression),
-    /// The end of WHILE, FOR or LOOP.
-    EndLoop(&'static str),
-    /// Repeats from a label: to its next block with the second label, or to here.
-    RepeatLabel {
-        from: String,
-        to: Option<String>,
-        times: Option<Expression>,
-        /// Only the block of the label (REPEATB).
-        block: bool,
-    },
-    /// Variables with their first values.
-    Define(Vec<(String, Option<Expression>)>, bool),
-    /// The head of a subprogram, with its parameters.
-    Proc(Vec<String>),
-    /// A declaration that says nothing about moves.
-    Declaration,
-}
 
 /// A line.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,5 +4,5 @@ pub(crate) mod block;
 pub(crate) mod cursor;
 pub(crate) mod expression;
 mod labels;
-mod structures;
-pub(crate) mod unit;
+pub(crate) mod routine;
+pub(crate) mod structures;

@@ -1,9 +1,76 @@
-//! Repeats by label, and definitions of variables.
+//! What lines may be, and those that repeat from a label or define variables.
 
-use super::block::Statement;
+use std::ops::Range;
+
 use super::cursor::Cursor;
 use super::expression::Expression;
 use crate::text::error::Located;
+
+/// A part of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Item {
+    /// An address with its value: `X10`, `X=R1+2`, `CR=5`, `I=AC(3)`.
+    Word {
+        name: String,
+        value: Expression,
+        span: Range<usize>,
+    },
+    /// A variable gets a value.
+    Set {
+        name: String,
+        indices: Vec<Expression>,
+        value: Expression,
+        span: Range<usize>,
+    },
+    /// A keyword or a call, with its arguments: those left out are `None`.
+    Key {
+        name: String,
+        arguments: Option<Vec<Option<Expression>>>,
+        span: Range<usize>,
+    },
+}
+
+/// Where a jump looks for its label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Search {
+    Forward,
+    Backward,
+    /// Forward first, then from the beginning.
+    Anywhere,
+}
+
+/// What a line does.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Statement {
+    Block(Vec<Item>),
+    Goto(Search, String),
+    /// A jump under a condition.
+    IfGoto(Expression, Search, String),
+    If(Expression),
+    Else,
+    EndIf,
+    While(Expression),
+    For(Vec<Item>, Expression),
+    Loop,
+    Repeat,
+    Until(Expression),
+    /// The end of WHILE, FOR or LOOP.
+    EndLoop(&'static str),
+    /// Repeats from a label: to its next block with the second label, or to here.
+    RepeatLabel {
+        from: String,
+        to: Option<String>,
+        times: Option<Expression>,
+        /// Only the block of the label (REPEATB).
+        block: bool,
+    },
+    /// Variables with their first values.
+    Define(Vec<(String, Option<Expression>)>, bool),
+    /// The head of a subprogram, with its parameters.
+    Proc(Vec<String>),
+    /// A declaration that says nothing about moves.
+    Declaration,
+}
 
 pub(crate) fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
     let block = cursor.name().is_some_and(|(name, _)| name == "REPEATB");

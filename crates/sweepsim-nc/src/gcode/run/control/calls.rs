@@ -21,20 +21,18 @@ pub(crate) struct SourceLine {
 }
 
 /// What is being executed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum CallKind {
+    #[default]
     Main,
     /// A subroutine of LinuxCNC.
     Subroutine(Label),
     /// M98, M97 and G65: where it starts, and how often it is still to be executed.
-    Program {
-        start: SourceLine,
-        left: u32,
-    },
+    Program { start: SourceLine, left: u32 },
 }
 
 /// A call that has not returned yet.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct CallLevel {
     pub kind: CallKind,
     /// Where to go on afterwards.
@@ -51,22 +49,6 @@ pub(crate) struct CallLevel {
     pub repeats: BTreeMap<usize, u64>,
     /// Fanuc's open loops: the number and the line of each.
     pub loops: Vec<(u32, usize)>,
-}
-
-impl CallLevel {
-    pub(crate) fn main() -> Self {
-        Self {
-            kind: CallKind::Main,
-            back: SourceLine::default(),
-            call: None,
-            locals: None,
-            named: None,
-            modes: None,
-            restore_modes: false,
-            repeats: BTreeMap::new(),
-            loops: Vec::new(),
-        }
-    }
 }
 
 /// Fanuc's letters for the arguments of a macro, and their variables.
@@ -98,7 +80,7 @@ impl Reader {
     pub(crate) fn level(&mut self) -> &mut CallLevel {
         // There is always the level of the main program.
         if self.levels.is_empty() {
-            self.levels.push(CallLevel::main());
+            self.levels.push(CallLevel::default());
         }
         let last = self.levels.len() - 1;
         &mut self.levels[last]
@@ -121,10 +103,12 @@ impl Reader {
         locals[0] = None;
         locals[31..].copy_from_slice(&saved[31..]);
         self.variables.locals = locals;
-        let mut level = CallLevel::main();
-        level.kind = CallKind::Subroutine(label);
-        level.locals = Some((Box::new(saved), 31));
-        level.named = Some(std::mem::take(&mut self.variables.named));
+        let level = CallLevel {
+            kind: CallKind::Subroutine(label),
+            locals: Some((Box::new(saved), 31)),
+            named: Some(std::mem::take(&mut self.variables.named)),
+            ..CallLevel::default()
+        };
         self.enter(
             level,
             SourceLine {
@@ -180,8 +164,10 @@ impl Reader {
                 ..spot
             }
         };
-        let mut level = CallLevel::main();
-        level.kind = CallKind::Program { start, left: times };
+        let level = CallLevel {
+            kind: CallKind::Program { start, left: times },
+            ..CallLevel::default()
+        };
         self.enter(level, start, here)
     }
 
@@ -240,9 +226,11 @@ impl Reader {
             line: spot.line + 1,
             ..spot
         };
-        let mut level = CallLevel::main();
-        level.kind = CallKind::Program { start, left: times };
-        level.locals = Some((Box::new(saved), 34));
+        let level = CallLevel {
+            kind: CallKind::Program { start, left: times },
+            locals: Some((Box::new(saved), 34)),
+            ..CallLevel::default()
+        };
         self.enter(level, start, here)
     }
 

@@ -4,7 +4,7 @@
 
 use super::super::interpreter::{Reader, Step};
 use super::calls::{DEEPEST, SourceLine};
-use crate::gcode::flow::labels::loop_number;
+use crate::gcode::flow::source::loop_number;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::Values;

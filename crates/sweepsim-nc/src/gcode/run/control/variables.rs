@@ -6,7 +6,8 @@ use super::super::interpreter::Reader;
 use crate::gcode::codes::MotionMode;
 use crate::gcode::offsets::Placed;
 use crate::gcode::syntax::block::Target;
-use crate::gcode::syntax::expression::{Value, Variables};
+use crate::gcode::syntax::expression::Variables;
+use crate::gcode::syntax::functions::Value;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -208,10 +209,7 @@ impl Reader {
                 _ if number == 0.0 => {}
                 _ => return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z")),
             }
-            return self.reframe(|reader| {
-                reader.offsets.place(offset, placed);
-                Ok(())
-            });
+            return self.reframe(|reader| reader.offsets.place(offset, placed));
         }
         let system = index >= 1000;
         if self.fanuc() && system {

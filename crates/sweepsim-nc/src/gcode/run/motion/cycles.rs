@@ -118,7 +118,7 @@ impl Reader {
         };
         if at[w] < plane && !back {
             at[w] = plane;
-            self.straight(at)?;
+            self.give(self.stroke_to(at, self.track.abc, true))?;
         }
         for repeat in 0..repeats as u32 {
             for k in [u, v] {
@@ -128,7 +128,7 @@ impl Reader {
                     _ => {}
                 }
             }
-            self.straight(at)?;
+            self.give(self.stroke_to(at, self.track.abc, true))?;
             if back {
                 self.turn_spindle(SpindleTurning::Stopped)?;
             }
@@ -174,12 +174,6 @@ impl Reader {
             self.track.xyz[w] = Some(if self.modes.absolute { plane } else { 0.0 });
         }
         Ok(self.track.known())
-    }
-
-    /// A rapid.
-    fn straight(&mut self, end: [f64; 3]) -> Result<(), NcProblem> {
-        let stroke = self.stroke_to(end, self.track.abc, true);
-        self.give(stroke)
     }
 
     /// Back boring: down to R beside the axis of the hole, across, up to Z, and out again.

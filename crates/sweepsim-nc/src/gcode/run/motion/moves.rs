@@ -48,8 +48,7 @@ impl Reader {
             return Ok(());
         };
         let end = inverse.point(std::array::from_fn(|k| control[k] - self.length.offset[k]));
-        let stroke = self.stroke_to(end, self.track.abc, rapid);
-        self.give(stroke)
+        self.give(self.stroke_to(end, self.track.abc, rapid))
     }
 
     pub(crate) fn stroke_to(&self, end: [f64; 3], abc: [f64; 3], rapid: bool) -> Stroke {

@@ -211,8 +211,7 @@ impl Reader {
             }
         }
         let rapid = motion == MotionMode::Rapid;
-        let stroke = self.stroke_to(end, self.track.abc, rapid);
-        self.give(stroke)?;
+        self.give(self.stroke_to(end, self.track.abc, rapid))?;
         self.stretched = true;
         Ok(())
     }

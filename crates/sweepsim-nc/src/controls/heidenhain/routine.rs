@@ -8,7 +8,7 @@ use crate::controls::recent::Recent;
 use crate::text::kept::KeptText;
 
 /// A program's text, block by block.
-pub(super) struct Unit {
+pub(super) struct Routine {
     pub(super) file: usize,
     text: KeptText,
     recent: Recent<Line>,
@@ -17,7 +17,7 @@ pub(super) struct Unit {
     pub(super) labels: BTreeMap<String, usize>,
 }
 
-impl Unit {
+impl Routine {
     /// Blocks are read here for their labels and continuations, and again when they run: kept as read, they would take many times their text.
     pub fn new(file: usize, text: Rc<String>) -> Self {
         let text = KeptText::new(text);
@@ -139,11 +139,11 @@ mod tests {
             from in prop::collection::vec(0..40_usize, 40),
         ) {
             let text = lines.iter().map(|line| format!("{line}\n")).collect();
-            let unit = Unit::new(0, Rc::new(text));
+            let routine = Routine::new(0, Rc::new(text));
             let expected = in_order(&lines);
-            prop_assert_eq!(unit.len(), lines.len());
+            prop_assert_eq!(routine.len(), lines.len());
             for index in from.into_iter().filter(|index| *index < lines.len()) {
-                let block = unit.block(index);
+                let block = routine.block(index);
                 let words: Vec<&str> = block.tokens.iter().map(|token| token.text.as_str()).collect();
                 prop_assert_eq!(&words, &expected[index], "{}", index);
             }

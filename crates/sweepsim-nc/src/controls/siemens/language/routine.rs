@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::block::{self, Line, Search, Statement};
+use super::block::{self, Line};
 use super::labels::Labels;
+use super::structures::{Search, Statement};
 use crate::controls::recent::Recent;
 use crate::text::error::{Located, NcProblem};
 use crate::text::kept::KeptText;
 
 /// A program or subprogram.
-pub(crate) struct Unit {
+pub(crate) struct Routine {
     /// An index of the program's files.
     pub file: usize,
     text: Rc<KeptText>,
@@ -61,11 +62,11 @@ fn own(line: &str) -> &str {
     if trimmed.starts_with('%') || path { "" } else { line }
 }
 
-impl Unit {
+impl Routine {
     /// Some lines of a text. Lines are read here for their labels and structures, and again when they run: kept as read, they would take twenty times
     /// their text.
     pub fn new(file: usize, text: Rc<KeptText>, lines: Range<usize>) -> Self {
-        let mut unit = Self {
+        let mut routine = Self {
             file,
             text,
             lines,
@@ -76,15 +77,15 @@ impl Unit {
         };
         let mut head = None;
         let mut open: Vec<(usize, &'static str)> = Vec::new();
-        for index in 0..unit.len() {
+        for index in 0..routine.len() {
             // A problem is reported where the program comes by.
-            let Ok(line) = block::line(unit.text(index)) else {
+            let Ok(line) = block::line(routine.text(index)) else {
                 continue;
             };
             for label in line.labels {
-                unit.labels.add(label, index);
+                routine.labels.add(label, index);
             }
-            let partners = &mut unit.partners;
+            let partners = &mut routine.partners;
             let mut pair = |kinds: &[&str]| {
                 if let Some((start, _)) = open.pop_if(|(_, kind)| kinds.contains(kind)) {
                     partners.insert(start, index);
@@ -110,9 +111,9 @@ impl Unit {
                 _ => {}
             }
         }
-        unit.parameters = head.unwrap_or_default();
-        unit.labels.finish();
-        unit
+        routine.parameters = head.unwrap_or_default();
+        routine.labels.finish();
+        routine
     }
 
     /// The number of lines.

@@ -1,0 +1,43 @@
+//! The frames in effect.
+
+use crate::machines::WorkFrame;
+
+/// The frames in effect.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frames {
+    /// `CYCL DEF 7`, before the plane is tilted and after.
+    pub shift: [f64; 3],
+    pub tilted_shift: [f64; 3],
+    /// `PLANE`.
+    pub tilt: Option<WorkFrame>,
+    /// `CYCL DEF 8`, 10, 11.
+    pub mirror: [bool; 3],
+    pub rotation: f64,
+    pub scale: Option<f64>,
+    pub preset: Option<f64>,
+}
+
+impl Frames {
+    pub fn tilted(&self) -> bool {
+        self.tilt.is_some()
+    }
+
+    /// Whether arcs and lengths are turned or scaled within the plane.
+    pub fn total(&self, plane: [usize; 3]) -> WorkFrame {
+        let mut frame = WorkFrame::shifted(self.shift);
+        if let Some(tilt) = &self.tilt {
+            frame = frame.then(tilt).then(&WorkFrame::shifted(self.tilted_shift));
+        }
+        let mirror = self.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 });
+        if self.mirror.contains(&true) {
+            frame = frame.then(&WorkFrame::scaled(mirror));
+        }
+        if self.rotation != 0.0 {
+            frame = frame.then(&WorkFrame::turned(plane[2], self.rotation));
+        }
+        if let Some(scale) = self.scale.filter(|scale| *scale != 1.0) {
+            frame = frame.then(&WorkFrame::scaled([scale; 3]));
+        }
+        frame
+    }
+}

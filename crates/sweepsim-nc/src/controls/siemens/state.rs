@@ -1,0 +1,145 @@
+//! What stays in effect until another word changes it.
+
+use std::collections::BTreeMap;
+
+use super::language::expression::Value;
+use crate::drive::{Corners, HoleCycle};
+use crate::machines::WorkFrame;
+use crate::model::event::Spindle;
+use crate::model::read_options::ReadOptions;
+
+/// How the tool moves, until another word says otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Motion {
+    #[default]
+    Rapid,
+    Feed,
+    Arc {
+        counter_clockwise: bool,
+    },
+    /// An arc through an intermediate point (`CIP`).
+    Through,
+    /// An arc tangential to the last move (`CT`).
+    Tangential,
+}
+
+/// Modal state: in effect until another word changes it.
+#[derive(Default)]
+pub(super) struct Modes {
+    pub motion: Motion,
+    /// The axes `[u, v, w]` of the plane: `u` to `v` is counter-clockwise.
+    pub plane: [usize; 3],
+    pub absolute: bool,
+    pub(super) inch: bool,
+    pub tip_control: bool,
+    /// `G60`: the axes rest after each block.
+    pub exact_stop: bool,
+    /// `D0`: without the tool's length.
+    pub(super) without_length: bool,
+    /// A cycle or subprogram at each position of the program at this depth.
+    pub modal_call: Option<(usize, Modal)>,
+    /// The tool's edge (`D`).
+    pub edge: u32,
+    /// An allowance of compensated contours (`OFFN`), in mm.
+    pub allowance: f64,
+    pub corners: Corners,
+    /// `DISC`.
+    pub distortion: f64,
+    /// `KONT`.
+    pub round_ends: bool,
+    /// The radius of `RNDM`, in mm, and the feed of `FRCM`.
+    pub rounding: Option<f64>,
+    pub corner_feed: Option<f64>,
+    /// The pole in the plane, in mm, and the last `AP` and `RP`.
+    pub pole: [f64; 2],
+    pub polar_angle: Option<f64>,
+    pub polar_radius: Option<f64>,
+    pub spindle: Spindle,
+    pub(super) speed: Option<f64>,
+    pub(super) selected: Option<u32>,
+    pub(super) tools: BTreeMap<String, u32>,
+    pub(super) uses_m6: bool,
+}
+
+/// What `MCALL` calls.
+#[derive(Clone, Debug)]
+pub(super) enum Modal {
+    Cycle(HoleCycle),
+    Program(String, Vec<Value>),
+}
+
+impl Modes {
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            plane: [0, 1, 2],
+            absolute: true,
+            inch: options.inch,
+            tip_control: options.machine.tip_control,
+            edge: 1,
+            ..Self::default()
+        }
+    }
+
+    /// Millimetres per unit of length.
+    pub fn unit(&self) -> f64 {
+        if self.inch { 25.4 } else { 1.0 }
+    }
+}
+
+/// What a pole is measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PoleFrom {
+    /// The last programmed position (`G110`).
+    Position,
+    /// The zero of the frame (`G111`).
+    Zero,
+    /// The last pole (`G112`).
+    Pole,
+}
+
+/// The frames in effect.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frames {
+    /// The work offset whose frame is the part's: the first one that a move uses.
+    pub first: Option<u32>,
+    /// The one in effect (`G500` is 0).
+    pub active: u32,
+    /// Set by `CYCLE800`.
+    pub swivel: WorkFrame,
+    pub swivelled: bool,
+    /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
+    pub programmed: WorkFrame,
+}
+
+/// An operation on the programmable frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Operation {
+    pub kind: FrameChange,
+    /// Added to the frame rather than replacing it.
+    pub additive: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FrameChange {
+    Shift,
+    Turn,
+    Scale,
+    Mirror,
+}
+
+impl Operation {
+    pub fn named(name: &str) -> Option<Self> {
+        let (kind, additive) = match name {
+            "TRANS" => (FrameChange::Shift, false),
+            "ATRANS" => (FrameChange::Shift, true),
+            "ROT" => (FrameChange::Turn, false),
+            "AROT" => (FrameChange::Turn, true),
+            "SCALE" => (FrameChange::Scale, false),
+            "ASCALE" => (FrameChange::Scale, true),
+            "MIRROR" => (FrameChange::Mirror, false),
+            "AMIRROR" => (FrameChange::Mirror, true),
+            _ => return None,
+        };
+        Some(Self { kind, additive })
+    }
+}
