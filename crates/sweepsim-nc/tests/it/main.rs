@@ -8,6 +8,7 @@ mod fuzz;
 mod gcode;
 mod harmless;
 mod heidenhain;
+mod holes;
 mod kinematics;
 mod klartext_cycles;
 mod level_arcs;
