@@ -151,3 +151,18 @@ fn posted_arcs_come_back() {
         }
     }
 }
+
+#[test]
+fn a_turn_at_the_feed_has_that_feed() {
+    let options = options("trunnion-ac");
+    for (motion, rapid, feed) in [("G1 Z29 F100", false, Some(100.0)), ("G0 Z29 F100", true, None)] {
+        let text = format!("G0 X1 Y2 Z30\n{motion}\nG68.2 X0 Y0 Z0 I0 J30 K0\nG53.1\nG0 X1 Y2 Z30\n");
+        let program = gcode::read(&text, &options).unwrap_or_else(|error| panic!("{error}"));
+        let turns: Vec<_> = program.poses.iter().filter(|pose| pose.line == 4).collect();
+        assert!(!turns.is_empty());
+        assert!(
+            turns.iter().all(|pose| (pose.rapid, pose.feed) == (rapid, feed)),
+            "{turns:?}"
+        );
+    }
+}
