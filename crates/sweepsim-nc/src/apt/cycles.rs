@@ -4,8 +4,7 @@
 //! `CLEAR`, `RTRCTO` and `RETURN` above it. With `CLEAR`, `RAPTO` is measured down from there (Creo).
 
 use super::statement::Statement;
-use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
-use crate::model::event::EventKind;
+use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
 
@@ -168,18 +167,10 @@ impl CycleStatement {
             })
         });
         let feeds_out = ["TAP", "BORE", "REAM", "RIGID"].iter().any(|word| has(word));
-        let dwell = statement.after("DWELL").filter(|seconds| *seconds > 0.0 && !has("REV"));
+        let dwell = statement.after("DWELL").filter(|_| !has("REV"));
         let hole = HoleCycle {
-            start: rapid_level,
-            bottom: -depth,
             work,
-            at_bottom: dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect(),
-            out: if feeds_out {
-                WayOut::FeedToStart(None)
-            } else {
-                WayOut::Rapid
-            },
-            ..HoleCycle::default()
+            ..HoleCycle::new(rapid_level, -depth, dwell, feeds_out)
         };
         Ok(Self::Begin(Box::new(Cycle {
             hole,

@@ -34,6 +34,23 @@ pub(crate) struct HoleCycle {
     pub out: WayOut,
 }
 
+impl HoleCycle {
+    /// A hole at once, with a dwell at the bottom unless that is 0, out of which the tool comes in rapid or at its feed.
+    pub fn new(start: f64, bottom: f64, dwell: Option<f64>, feeds_out: bool) -> Self {
+        let dwell = dwell.filter(|seconds| *seconds > 0.0);
+        Self {
+            start,
+            bottom,
+            at_bottom: dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect(),
+            out: match feeds_out {
+                true => WayOut::FeedToStart(None),
+                false => WayOut::Rapid,
+            },
+            ..Self::default()
+        }
+    }
+}
+
 /// How a hole is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum HoleWork {
@@ -46,8 +63,8 @@ pub(crate) enum HoleWork {
         radius: f64,
         turns: f64,
     },
-    /// From below: down beside the axis, across to it, and up. In rapid along the hole (Fanuc), or at the feed, and back down before the
-    /// tool leaves the axis (Heidenhain).
+    /// From below: down beside the axis, across to it, and up. In rapid along the hole (Fanuc), or at the feed, and back down
+    /// before the tool leaves the axis (Heidenhain).
     Back {
         up: f64,
         feed: Option<f64>,

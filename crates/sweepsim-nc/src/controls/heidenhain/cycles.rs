@@ -109,14 +109,14 @@ impl Reader<'_> {
         };
         let surface = length(203)?.unwrap_or(0.0);
         let start = surface + clearance;
-        let mut hole = HoleCycle {
-            start,
-            end: start.max(surface + length(204)?.unwrap_or(0.0)),
-            ..HoleCycle::default()
+        let dwell = match number {
+            204 => find(255)?,
+            208 => None,
+            _ => find(211)?,
         };
-        let dwell = find(if number == 204 { 255 } else { 211 })?.filter(|seconds| *seconds > 0.0);
-        let dwell = dwell.filter(|_| number != 208);
-        hole.at_bottom = dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect();
+        // The bottom is given below.
+        let mut hole = HoleCycle::new(start, start, dwell, false);
+        hole.end = start.max(surface + length(204)?.unwrap_or(0.0));
         if number == 204 {
             let Some(aside) = aside else {
                 let problem =

@@ -1,7 +1,6 @@
 //! Drilling cycles.
 
-use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
-use crate::model::event::EventKind;
+use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::text::error::NcProblem;
 
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
@@ -66,19 +65,10 @@ pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Re
         "CYCLE81" | "CYCLE840" => None,
         _ => get(5),
     };
-    let dwell = dwell.filter(|seconds| *seconds > 0.0);
     let feeds_out = matches!(name, "CYCLE84" | "CYCLE840" | "CYCLE85" | "CYCLE89");
     Ok(HoleCycle {
-        start: reference + clearance,
-        bottom: depth,
         end: retract,
         work,
-        at_bottom: dwell.map(|seconds| EventKind::Dwell { seconds }).into_iter().collect(),
-        out: if feeds_out {
-            WayOut::FeedToStart(None)
-        } else {
-            WayOut::Rapid
-        },
-        ..HoleCycle::default()
+        ..HoleCycle::new(reference + clearance, depth, dwell, feeds_out)
     })
 }

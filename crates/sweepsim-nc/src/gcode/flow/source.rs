@@ -1,4 +1,6 @@
-//! The text of a program or of a file of subprograms, with its lines, and where its programs, subroutines, loops and block numbers are.
+//! The text of a program or of a file of subprograms, with its lines.
+//!
+//! It knows where its programs, subroutines, loops and block numbers are.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
