@@ -12,7 +12,7 @@ pub struct ProgramPose {
     pub pose: Pose,
     /// Whether the move to this pose is a rapid.
     pub rapid: bool,
-    /// The file: an index of [`Program::files`].
+    /// The file: an index of [`Program::files`](crate::Program::files).
     pub file: usize,
     /// The line of the file, from 1.
     pub line: usize,
@@ -25,7 +25,7 @@ pub struct ProgramPose {
     pub feed: Option<f64>,
     /// What the feed counts.
     pub feed_mode: FeedMode,
-    /// The call, cycle or loop that made this move: an index of [`Program::calls`]. `None` for moves of the main program.
+    /// The call, cycle or loop that made this move, by its index in [`Program::calls`](crate::Program::calls); else `None`.
     pub call: Option<u32>,
     /// Whether the tip follows the move: under tip control, in tilted planes, in programs of poses, and without a machine. Otherwise each axis of the
     /// machine moves at constant speed.
