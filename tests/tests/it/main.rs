@@ -2,6 +2,7 @@
 
 mod brute_force;
 mod dependencies;
+mod known_gaps;
 mod railing;
 mod router_bit;
 mod same_part;
