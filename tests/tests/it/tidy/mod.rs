@@ -1,5 +1,6 @@
 //! House rules that no lint knows.
 
+mod links;
 mod siblings;
 mod structure;
 
@@ -165,28 +166,4 @@ fn every_folder_of_fixtures_says_where_it_comes_from() {
         .map(|path| path.display().to_string())
         .collect();
     assert_none(&missing, "a README for each");
-}
-
-#[test]
-fn links_between_pages_lead_somewhere() {
-    let mut broken = Vec::new();
-    let mut links = 0;
-    for page in files(&["."], "md") {
-        let text = text(&page);
-        for link in text
-            .split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split([')', '#']).next())
-        {
-            if link.is_empty() || link.contains("://") || link.contains(char::is_whitespace) {
-                continue;
-            }
-            links += 1;
-            if !page.with_file_name(link).exists() {
-                broken.push(format!("{}: {link}", page.display()));
-            }
-        }
-    }
-    assert!(links > 5, "only {links} links seen");
-    assert_none(&broken, "a link to nothing");
 }
