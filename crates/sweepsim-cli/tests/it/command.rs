@@ -98,7 +98,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
     let workdir = Workdir::new(JOB);
     let mut before = Vec::new();
     for threads in ["1", "2", "5"] {
-        let output = workdir.run_job("simulate", &["--quiet", "--threads", threads]);
+        let output = workdir.run_job("simulate", &["--quiet", "--threads", threads, "--size", "320x240"]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let read = |name: &&str| fs::read(workdir.path("out").join(name)).unwrap();
         let files: Vec<Vec<u8>> = ALL[..3].iter().map(read).collect();
@@ -134,7 +134,7 @@ fn motions_of_splines_are_simulated_swept_and_cut() {
                   orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0.3, 0, 0)])";
     let workdir = Workdir::new(&JOB.replace(SECOND, &format!("motion: Motion({motion})")));
     let volume = |command: &str| {
-        let output = workdir.run_job(command, &["--quiet"]);
+        let output = workdir.run_job(command, &["--quiet", "--size", "160x120"]);
         assert!(output.status.success(), "{command}: {}", text(&output.stderr));
         report(&workdir)["volume"].as_f64().expect("a number")
     };
@@ -173,10 +173,10 @@ fn a_corner_that_is_not_tangent_is_said_by_every_command() {
         let said = text(&output.stdout);
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     };
-    said(&workdir.run_job("simulate", &[]));
+    said(&workdir.run_job("simulate", &["--size", "160x120"]));
     let notes = report(&workdir)["notes"].as_array().expect("a list").len();
     assert_eq!(notes, 2);
-    said(&workdir.run_job("sweep", &[]));
+    said(&workdir.run_job("sweep", &["--size", "160x120"]));
     said(&workdir.run_job("section", &["--plane", "z=4"]));
     said(&inspect(&workdir, "job.ron"));
     fs::write(
@@ -194,7 +194,8 @@ fn inspect_tells_what_is_there() {
     assert!(job.status.success(), "{}", text(&job.stderr));
     let said = text(&job.stdout);
     assert!(said.contains("radius 2.0000, length 30.000 mm"), "{said}");
-    assert!(workdir.run_job("simulate", &["--quiet"]).status.success());
+    let small = ["--quiet", "--size", "160x120"];
+    assert!(workdir.run_job("simulate", &small).status.success());
     for name in ["out/dexels.csv", "out/part.ply"] {
         let output = inspect(&workdir, name);
         assert!(

@@ -170,7 +170,7 @@ const FIRST: &str = "((-4, 5.13, 2.9), (0, 0, 1)), ((24, 5.13, 2.9), (0, 0, 1))"
 fn a_later_run_goes_on_with_sharp_walls() {
     let both = JOB.replace(FIRST, &format!("{FIRST}]), Path(tool: 1, poses: [{LATER}"));
     let workdir = Workdir::new(&both);
-    let only = ["--only", "tridexels,dexels,mesh,picture"];
+    let only = ["--only", "tridexels,dexels,mesh,picture", "--size", "320x240"];
     simulate(&workdir, "whole", &only).unwrap();
     fs::write(workdir.path("job.ron"), JOB).unwrap();
     simulate(&workdir, "first", &only).unwrap();

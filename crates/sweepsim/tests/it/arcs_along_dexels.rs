@@ -160,25 +160,33 @@ fn bottom(pointed: bool, rho: f64) -> f64 {
 /// The least value of a function on [0, 1], if it has one least value in the neighbourhood of each sample that is not
 /// above the next ones: on a full circle, two samples are at one place.
 pub fn least(function: impl Fn(f64) -> f64) -> f64 {
+    least_of(|share| [function(share)])[0]
+}
+
+/// That of each of several functions, sampled together.
+pub fn least_of<const N: usize>(function: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     const SAMPLES: usize = 1000;
     let share = |n: usize| n.min(SAMPLES) as f64 / SAMPLES as f64;
-    let samples: Vec<f64> = (0..=SAMPLES).map(|n| function(share(n))).collect();
-    let mut found = f64::INFINITY;
-    for n in 0..=SAMPLES {
-        let beside = [n.saturating_sub(1), (n + 1).min(SAMPLES)];
-        if !(samples[n] < f64::INFINITY && beside.iter().all(|other| samples[n] <= samples[*other])) {
-            continue;
+    let samples: Vec<[f64; N]> = (0..=SAMPLES).map(|n| function(share(n))).collect();
+    std::array::from_fn(|k| {
+        let mut found = f64::INFINITY;
+        for n in 0..=SAMPLES {
+            let beside = [n.saturating_sub(1), (n + 1).min(SAMPLES)];
+            let here = samples[n][k];
+            if !(here < f64::INFINITY && beside.iter().all(|other| here <= samples[*other][k])) {
+                continue;
+            }
+            found = found.min(here);
+            let [mut low, mut high] = beside.map(share);
+            for _ in 0..60 {
+                let [a, b] = [low + 0.382 * (high - low), low + 0.618 * (high - low)];
+                let [at_a, at_b] = [a, b].map(|share| function(share)[k]);
+                found = found.min(at_a).min(at_b);
+                if at_a < at_b { high = b } else { low = a }
+            }
         }
-        found = found.min(samples[n]);
-        let [mut low, mut high] = beside.map(share);
-        for _ in 0..60 {
-            let [a, b] = [low + 0.382 * (high - low), low + 0.618 * (high - low)];
-            let [at_a, at_b] = [a, b].map(&function);
-            found = found.min(at_a).min(at_b);
-            if at_a < at_b { high = b } else { low = a }
-        }
-    }
-    found
+        found
+    })
 }
 
 proptest! {

@@ -1,7 +1,7 @@
 //! Arcs of tools that lie in the plane of the arc, along the dexels or across them, as dexels along x and y see those
 //! of `G18` and `G19`: in closed form, against charts and against samples in time.
 
-use crate::arcs_along_dexels::{angles, least, starts, tool};
+use crate::arcs_along_dexels::{angles, least_of, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::arcs_of_lying_tools::seen;
 use crate::translations::{TOLERANCE, agree, cases, tools};
@@ -201,8 +201,11 @@ fn lowest(lie: Lie, pointed: bool, start: [f64; 3], [radius, from, angle]: Arc, 
             let [x, y] = [lines.x(i) - tip[0], lines.y(j) - tip[1]];
             seen(pointed, tip[2], ax * x + ay * y, ax * y - ay * x)
         };
-        let deepest = -least(|share| -at(share)[0]);
-        let lowest = least(|share| at(share)[1]);
+        let [inside, lowest] = least_of(|share| {
+            let [depth, lowest] = at(share);
+            [-depth, lowest]
+        });
+        let deepest = -inside;
         let own = found.volume.at(index).to_vec();
         let Some(first) = own.first() else {
             prop_assert!(deepest < 1e-6, "{:?} {deepest}", (i, j));

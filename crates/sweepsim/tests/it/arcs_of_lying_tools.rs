@@ -1,7 +1,7 @@
 //! Arcs in planes along the dexels of tools that lie across these, in closed form, against charts and against samples
 //! in time.
 
-use crate::arcs_along_dexels::{Arc, angles, direction, least, path, starts, tool};
+use crate::arcs_along_dexels::{Arc, angles, direction, least_of, path, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::translations::{TOLERANCE, agree, cases, tools};
 use proptest::prelude::*;
@@ -149,8 +149,11 @@ proptest! {
                 let z = start[2] + radius * (at.sin() - from.sin());
                 seen(pointed, z, ax * x + ay * y, ax * y - ay * x)
             };
-            let deepest = -least(|share| -at(share)[0]);
-            let lowest = least(|share| at(share)[1]);
+            let [inside, lowest] = least_of(|share| {
+                let [depth, lowest] = at(share);
+                [-depth, lowest]
+            });
+            let deepest = -inside;
             let own = found.volume.at(index).to_vec();
             let Some(first) = own.first() else {
                 prop_assert!(deepest < 1e-6, "{:?} {deepest}", (i, j));

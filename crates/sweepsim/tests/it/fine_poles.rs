@@ -11,6 +11,7 @@ use crate::near_poles::{over_poles, over_poles_on_curves};
 use crate::rational_bits::{burr, ring};
 use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, sweep};
+use sweepsim_dexel::Dexels;
 use sweepsim_motion::Tool;
 
 /// Tolerances down to almost the least.
@@ -32,25 +33,29 @@ fn dear_at_fine_tolerances(
     most: f64,
 ) -> Vec<String> {
     let mut wrong = Vec::new();
-    for tolerance in FINE {
-        for &method in methods {
-            for &(what, family) in list {
-                let swept = |d: f64, tolerance: f64, method: Method| {
-                    let input = family(d);
-                    let options = Options::new(tolerance).method(method);
-                    let found = sweep(tool, &input.0, &input.1, &options, &()).expect("a sweep");
-                    (work(method, &found.statistics, &input.1), found)
-                };
+    for &(what, family) in list {
+        let swept = |d: f64, tolerance: f64, method: Method| {
+            let input = family(d);
+            let options = Options::new(tolerance).method(method);
+            let found = sweep(tool, &input.0, &input.1, &options, &()).expect("a sweep");
+            (work(method, &found.statistics, &input.1), found)
+        };
+        // At a tolerance of 1e-6, which all others are compared with.
+        let coarse: Vec<Dexels> = distances
+            .iter()
+            .map(|d| swept(*d, 1e-6, Method::Mixed).1.volume)
+            .collect();
+        for tolerance in FINE {
+            for &method in methods {
                 let (generic, _) = swept(GENERIC, tolerance, method);
-                for d in distances {
+                for (d, coarse) in distances.iter().zip(&coarse) {
                     let (work, found) = swept(*d, tolerance, method);
                     let (ratio, again, open) = (
                         work / generic,
                         found.statistics.repaired,
                         found.statistics.unresolved.len(),
                     );
-                    let apart =
-                        difference(&found.volume, &swept(*d, 1e-6, Method::Mixed).1.volume, 10.0, 0.0).along_lines;
+                    let apart = difference(&found.volume, coarse, 10.0, 0.0).along_lines;
                     let line = format!(
                         "{tolerance:e}, {method}, {name}, {what}, {d:e}: {ratio:.2} of {generic}, {again} again, {open} open, {apart:e}"
                     );
@@ -76,8 +81,8 @@ fn flat_poles() -> [(&'static str, Tool); 4] {
     [("pad", pad()), ("bit", bit()), ("ring", ring()), ("burr", burr())]
 }
 
-/// Most cost as little; where rounding hides a few of the lines, these are solved again. Before rounding was bounded
-/// cell by cell, all 15 in a row were, for up to 41 times the boxes.
+/// Most cost as little; where rounding hides a few of the lines, these are solved again. If rounding were not bounded
+/// cell by cell, all 15 in a row would be, for up to 41 times the boxes.
 #[test]
 fn poles_as_flat_as_a_cubic_cost_little_by_default() {
     const DEAREST: f64 = 10.0;
