@@ -18,8 +18,8 @@ pub use assembly::{Assembly, Body, BodyKind};
 pub use boundary::{Edge, Fold, NormalField, Patch, PatchError, Revolved, Side, ToolError};
 pub use packed::PackedRows;
 pub use path::{
-    ArcError, Course, Law, Move, OtherCourse, OtherCourses, PackedMoves, PackedPoses, Path, PathBuilder, PathError,
-    RotaryTable, TipArc, Turning, UnknownTable,
+    ArcError, Law, Move, OtherCourse, OtherCourses, PackedMoves, PackedPoses, Path, PathBuilder, PathError,
+    RotaryTable, TipArc, TipCourse, Turning, UnknownTable,
 };
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};

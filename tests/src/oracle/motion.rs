@@ -9,7 +9,7 @@
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc as Shared;
-use sweepsim_motion::{Course, Move, Pose, Turning};
+use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 /// A placed tool: its tip and its unit axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -247,11 +247,11 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
     let tip: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
     let (tip_speed, round);
     match way.course {
-        Course::Straight => {
+        TipCourse::Straight => {
             (tip_speed, round) = ((p1 - p0).norm(), 0.0);
             tip = Shared::new(move |t| p0 + (p1 - p0) * t);
         }
-        Course::Arc(arc) => {
+        TipCourse::Arc(arc) => {
             let (centre, normal, angle) = (
                 Vector3::from(arc.centre()),
                 nalgebra::Unit::new_unchecked(Vector3::from(arc.normal())),

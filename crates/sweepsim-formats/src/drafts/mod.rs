@@ -7,7 +7,7 @@ mod words;
 use std::fmt;
 use std::path::{Path as FilePath, PathBuf};
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::tools::{ToolLibrary, read_library};
 use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units};
 
@@ -195,7 +195,7 @@ impl<'a> Drafter<'a> {
         let has_arcs = program
             .poses
             .in_order()
-            .any(|pose| matches!(pose.way().course, Course::Arc(_)));
+            .any(|pose| matches!(pose.way().course, TipCourse::Arc(_)));
         let chords = if has_arcs {
             (read.exact_arcs, read.arc_tolerance) = (false, 0.01);
             Some(provided.program(&file, &read)?)

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path as FilePath;
 use sweepsim_formats::{FormatError, Job};
-use sweepsim_motion::{Course, RotaryTable, Turning};
+use sweepsim_motion::{RotaryTable, TipCourse, Turning};
 
 fn job(path: &str) -> Result<Job, FormatError> {
     let text = format!(
@@ -67,8 +67,8 @@ fn arcs_and_helices() {
     let path = &job.paths[0].path;
     assert_eq!(path.moves(), 3);
     let angle = |index: usize| match path.way(index).course {
-        Course::Arc(arc) => arc.angle(),
-        Course::Straight => 0.0,
+        TipCourse::Arc(arc) => arc.angle(),
+        TipCourse::Straight => 0.0,
     };
     assert_eq!(angle(0), 0.0);
     assert!((angle(1) + TAU + PI).abs() < 1e-12 && (angle(2) - PI).abs() < 1e-12);

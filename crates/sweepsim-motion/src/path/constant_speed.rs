@@ -21,7 +21,7 @@
 //! parts join without a kink. `docs/algorithms/motions.md` has the derivations.
 
 use super::rotary::{turn, unit_axis};
-use super::{Course, Move, RotaryTable, TipArc, Turning};
+use super::{Move, RotaryTable, TipArc, TipCourse, Turning};
 use crate::pose::Pose;
 use crate::segment::{NO_TURN, Segment, SegmentCurve, frame, product, raised, rational_turn, turn_between};
 use nalgebra::{Matrix3, Vector3};
@@ -99,10 +99,10 @@ impl Turns {
 
     /// The same with exactly the axis and the angle of an arc, if they are the same but for rounding: tool and tip then
     /// turn as one rigid body, with the same weights to the bit.
-    fn with_arc(self, course: &Course) -> Self {
+    fn with_arc(self, course: &TipCourse) -> Self {
         /// Rounding errors of orientations that are turned by an angle, and of the turn between them.
         const ROUNDING: f64 = 16.0 * f64::EPSILON;
-        let (Self::One { start, k, angle }, Course::Arc(arc)) = (&self, course) else {
+        let (Self::One { start, k, angle }, TipCourse::Arc(arc)) = (&self, course) else {
             return self;
         };
         let (normal, same_way) = (arc.normal_vector().into_inner(), (angle * arc.angle()).signum());
@@ -172,7 +172,7 @@ const NEAR: f64 = 0.9995;
 
 /// The angle by which a symmetric tool turns about its own axis together with an arc.
 fn own_turn(from: &Pose, to: &Pose, way: &Move) -> Option<f64> {
-    let Course::Arc(arc) = way.course else { return None };
+    let TipCourse::Arc(arc) = way.course else { return None };
     if matches!(way.turning, Turning::Rotary { from, to, .. } if from[0] != to[0] || from[1] != to[1]) {
         return None;
     }
@@ -206,10 +206,10 @@ fn with_own_turn((turns, weights, spins): Turned, angle: f64, n: usize, m: usize
 }
 
 impl Tip {
-    fn new(from: &Pose, to: &Pose, course: &Course) -> Self {
+    fn new(from: &Pose, to: &Pose, course: &TipCourse) -> Self {
         match course {
-            Course::Straight => Self::Straight([from.tip_vector(), to.tip_vector()]),
-            Course::Arc(arc) => Self::Arc(
+            TipCourse::Straight => Self::Straight([from.tip_vector(), to.tip_vector()]),
+            TipCourse::Arc(arc) => Self::Arc(
                 *arc,
                 from.tip_vector(),
                 to.tip_vector() - arc.turned(from.tip_vector(), 1.0),

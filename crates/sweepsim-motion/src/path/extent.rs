@@ -1,6 +1,6 @@
 //! How long the moves of a path are, and how far it goes.
 
-use super::{Course, Path, Poses, Ways};
+use super::{Path, Poses, TipCourse, Ways};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
@@ -35,12 +35,12 @@ impl Path {
                 return (4.0 * chords(128) - chords(64)) / 3.0;
             }
             Ways::Placed(placed) => return placed.own.tip_length(index),
-            Ways::Slerp => Course::Straight,
+            Ways::Slerp => TipCourse::Straight,
             Ways::Each(_) | Ways::Packed { .. } => self.way(index).course,
         };
         match course {
-            Course::Straight => (to - from).norm(),
-            Course::Arc(arc) => {
+            TipCourse::Straight => (to - from).norm(),
+            TipCourse::Arc(arc) => {
                 let rise = (to - from).dot(&arc.normal_vector());
                 (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
             }
@@ -85,9 +85,9 @@ impl Path {
         let ends = self.largest();
         let moves = self.ways_in_order().zip(self.poses_in_order(0));
         moves.fold(ends, |size, (way, from)| match way.course {
-            Course::Straight => size,
+            TipCourse::Straight => size,
             // A circle, the rise, and what the rise is measured from.
-            Course::Arc(arc) => size.max(
+            TipCourse::Arc(arc) => size.max(
                 arc.turned(from.tip_vector(), 0.0).norm()
                     + 2.0 * arc.radius_vector(from.tip_vector()).norm()
                     + 2.0 * ends,

@@ -16,7 +16,7 @@ mod tip_arc;
 pub use builder::PathBuilder;
 pub use compact::PackedPoses;
 pub use error::PathError;
-pub use moves::{Course, Law, Move, Turning};
+pub use moves::{Law, Move, TipCourse, Turning};
 pub use other_courses::{OtherCourse, OtherCourses};
 pub use packed_moves::PackedMoves;
 pub use rotary::{RotaryTable, UnknownTable};
@@ -282,7 +282,7 @@ impl Path {
     #[must_use]
     pub fn rests(&self, from: usize, to: usize) -> bool {
         let still = |way: &Move| match (way.course, way.turning) {
-            (Course::Arc(_), _) => false,
+            (TipCourse::Arc(_), _) => false,
             (_, Turning::Rotary { from, to, .. }) => from == to,
             _ => true,
         };

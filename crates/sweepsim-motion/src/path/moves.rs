@@ -6,14 +6,14 @@ use super::{RotaryTable, TipArc};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Move {
     /// The course of the tip.
-    pub course: Course,
+    pub course: TipCourse,
     /// How the tool turns.
     pub turning: Turning,
 }
 
 /// The course of the tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Course {
+pub enum TipCourse {
     /// A straight line.
     #[default]
     Straight,
@@ -59,7 +59,7 @@ impl Move {
     #[must_use]
     pub fn straight(turning: Turning) -> Self {
         Self {
-            course: Course::Straight,
+            course: TipCourse::Straight,
             turning,
         }
     }
@@ -68,7 +68,7 @@ impl Move {
     #[must_use]
     pub fn arc(arc: TipArc) -> Self {
         Self {
-            course: Course::Arc(arc),
+            course: TipCourse::Arc(arc),
             turning: Turning::Even,
         }
     }
@@ -78,8 +78,8 @@ impl Move {
     pub fn reversed(&self) -> Self {
         Self {
             course: match self.course {
-                Course::Straight => Course::Straight,
-                Course::Arc(arc) => Course::Arc(arc.reversed()),
+                TipCourse::Straight => TipCourse::Straight,
+                TipCourse::Arc(arc) => TipCourse::Arc(arc.reversed()),
             },
             turning: match self.turning {
                 Turning::Rotary { table, from, to } => Turning::Rotary {

@@ -1,6 +1,6 @@
 //! Moves of long paths, packed.
 
-use super::{Course, Move, RotaryTable, TipArc, Turning};
+use super::{Move, RotaryTable, TipArc, TipCourse, Turning};
 use crate::packed::PackedRows;
 use std::ops::Range;
 
@@ -51,7 +51,7 @@ impl PackedMoves {
                 }
             }
         };
-        if let Course::Arc(arc) = way.course {
+        if let TipCourse::Arc(arc) = way.course {
             row[1..4].copy_from_slice(&arc.centre());
             row[4..7].copy_from_slice(&arc.normal());
             row[7] = arc.angle();
@@ -105,9 +105,9 @@ fn of_way_row(row: [f64; 12]) -> Move {
     };
     Move {
         course: if kind & ARC == 0 {
-            Course::Straight
+            TipCourse::Straight
         } else {
-            Course::Arc(TipArc::of_parts(
+            TipCourse::Arc(TipArc::of_parts(
                 [row[1], row[2], row[3]],
                 [row[4], row[5], row[6]],
                 row[7],

@@ -1,6 +1,6 @@
 //! Paths in another frame.
 
-use super::{Course, Move, PackedPoses, Path, PathError, Poses, Ways};
+use super::{Move, PackedPoses, Path, PathError, Poses, TipCourse, Ways};
 use crate::pose::Pose;
 use crate::segment::Segment;
 use nalgebra::{Matrix3, Vector3};
@@ -83,8 +83,8 @@ impl Placed {
         let own = self.own.way(index);
         Move {
             course: match own.course {
-                Course::Straight => Course::Straight,
-                Course::Arc(arc) => Course::Arc(arc.moved(&self.turn, self.shift)),
+                TipCourse::Straight => TipCourse::Straight,
+                TipCourse::Arc(arc) => TipCourse::Arc(arc.moved(&self.turn, self.shift)),
             },
             ..own
         }

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use sweepsim_motion::{
-    ArcError, Course, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion,
-    TipArc, Turning,
+    ArcError, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion, TipArc,
+    TipCourse, Turning,
 };
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
@@ -22,8 +22,8 @@ pub fn axis() -> impl Strategy<Value = [f64; 3]> {
 /// The law of a move in sines and cosines: the axis and the tip at a time.
 fn law(from: &Pose, to: &Pose, way: &Move, time: f64) -> (Vector3<f64>, Vector3<f64>) {
     let tip = match way.course {
-        Course::Straight => Vector3::from(from.tip()) + (Vector3::from(to.tip()) - Vector3::from(from.tip())) * time,
-        Course::Arc(arc) => {
+        TipCourse::Straight => Vector3::from(from.tip()) + (Vector3::from(to.tip()) - Vector3::from(from.tip())) * time,
+        TipCourse::Arc(arc) => {
             let turned = |part: f64| {
                 Vector3::from(arc.centre())
                     + Rotation3::from_axis_angle(
@@ -90,8 +90,8 @@ fn move_of(kind: usize, from: [f64; 3], to: [f64; 3], angles: [[f64; 2]; 2], axe
     match kind {
         0 => Path::with_law(plain()?, Law::ConstantSpeed).ok(),
         1 => Path::with_moves(plain()?, vec![Move::arc(arc())]).ok(),
-        2 | 3 => rotary(Course::Straight),
-        _ => rotary(Course::Arc(arc())),
+        2 | 3 => rotary(TipCourse::Straight),
+        _ => rotary(TipCourse::Arc(arc())),
     }
 }
 
@@ -256,7 +256,7 @@ fn a_reversed_move_goes_through_the_same_placements() {
     let angles = [[20.0, -30.0], [50.0, 80.0]];
     let arc = TipArc::new([0.0; 3], [0.0, 0.3, 1.0], 2.0).unwrap();
     let way = Move {
-        course: Course::Arc(arc),
+        course: TipCourse::Arc(arc),
         turning: Turning::Rotary {
             table,
             from: angles[0],

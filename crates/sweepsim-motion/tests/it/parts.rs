@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
-use sweepsim_motion::{Course, Law, Move, Path, Pose, RotaryTable, Segment, SegmentEnd, TipArc, Turning};
+use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, Segment, SegmentEnd, TipArc, TipCourse, Turning};
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).unwrap()
@@ -17,7 +17,7 @@ fn segments(tip: [f64; 3], tilt: f64) -> Vec<Segment> {
     let angles = [[0.0, 0.0], [20.0 * tilt, 35.0]];
     let turned = angles.map(|angles| pose(if angles[1] == 0.0 { [0.0; 3] } else { tip }, table.axis(angles)));
     let rotary = Move {
-        course: Course::Straight,
+        course: TipCourse::Straight,
         turning: Turning::Rotary {
             table,
             from: angles[0],
@@ -29,7 +29,9 @@ fn segments(tip: [f64; 3], tilt: f64) -> Vec<Segment> {
         pose([0.0, 5.0, tilt], [s, 0.0, c]),
     ];
     let arc = Move {
-        course: Course::Arc(TipArc::between([5.0, 0.0, 0.0], [0.0, 5.0, tilt], [0.0; 3], [0.0, 0.0, 1.0], 1).unwrap()),
+        course: TipCourse::Arc(
+            TipArc::between([5.0, 0.0, 0.0], [0.0, 5.0, tilt], [0.0; 3], [0.0, 0.0, 1.0], 1).unwrap(),
+        ),
         turning: Turning::Even,
     };
     let mut all = Segment::between(&from, &to);

@@ -1,6 +1,6 @@
 //! Arcs of the tip, in any frame.
 
-use sweepsim_motion::{Course, Move, TipArc, Turning};
+use sweepsim_motion::{Move, TipArc, TipCourse, Turning};
 
 use super::circular_arc::Arc;
 use super::driver::Coordinates;
@@ -44,7 +44,7 @@ impl Track {
                 if turns {
                     self.direct = direction;
                 }
-                let course = Course::Arc(exact);
+                let course = TipCourse::Arc(exact);
                 self.push(target, Move { course, turning }, false)?;
                 self.arrive(arc.end, abc);
                 return Ok(());

@@ -1,7 +1,7 @@
 //! The course of a tool: where it is, in which frame, and its poses so far. Readers say where it goes.
 
 use nalgebra::Vector3;
-use sweepsim_motion::{Course, Move, Pose, Turning};
+use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace};
 use super::driver::{Coordinates, Driver, Sense};
@@ -334,7 +334,7 @@ impl Track {
             }
             _ => self.driver.pose(&to, self.coordinates)?,
         };
-        let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
+        let moves = matches!(way.course, TipCourse::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| is_same(&last.pose, &pose));
         if !same {
             self.check_room(self.program.poses.len())?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 
 use crate::model::event::{EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
@@ -130,7 +130,7 @@ fn joined([low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
 fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let ends = joined([a; 2], [b; 2]);
-    let Course::Arc(arc) = to.way().course else {
+    let TipCourse::Arc(arc) = to.way().course else {
         return ends;
     };
     let (n, angle) = (arc.normal(), arc.angle());
@@ -171,7 +171,7 @@ impl ToolUsage {
         }
         self.feed_moves += 1;
         self.feed_length += length;
-        self.arcs += usize::from(matches!(to.way().course, Course::Arc(_)));
+        self.arcs += usize::from(matches!(to.way().course, TipCourse::Arc(_)));
         let found = course_extent(from, to);
         self.extent = Some(self.extent.map_or(found, |all| joined(all, found)));
         let widen = |range: &mut Option<[f64; 2]>, value: f64| {
@@ -202,8 +202,8 @@ pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let chord = [0, 1, 2].map(|k| b[k] - a[k]);
     match to.way().course {
-        Course::Straight => chord[0].hypot(chord[1]).hypot(chord[2]),
-        Course::Arc(arc) => {
+        TipCourse::Straight => chord[0].hypot(chord[1]).hypot(chord[2]),
+        TipCourse::Arc(arc) => {
             let (centre, normal) = (arc.centre(), arc.normal());
             let dot = |v: [f64; 3]| v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
             let radial = [0, 1, 2].map(|k| a[k] - centre[k]);

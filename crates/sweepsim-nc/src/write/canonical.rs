@@ -2,7 +2,7 @@
 
 use std::io::{Result, Write};
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
@@ -82,7 +82,7 @@ fn of_pose(pose: &ProgramPose) -> String {
         }
     };
     let arc = match pose.way().course {
-        Course::Arc(arc) if pose.joined => format!(
+        TipCourse::Arc(arc) if pose.joined => format!(
             " about ({}) normal ({}) by {} deg",
             words(arc.centre()),
             words(arc.normal()),

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::io::{Result, Write};
 
-use sweepsim_motion::{Course, TipArc, Turning};
+use sweepsim_motion::{TipArc, TipCourse, Turning};
 
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
@@ -98,9 +98,11 @@ impl<W: Write> Output<'_, W> {
         if !pose.rapid && pose.feed.is_none() && self.feed.is_some() {
             self.lose("moves without a feed after others with one".to_owned());
         }
-        if let (true, Some(last), Course::Arc(arc)) = (pose.joined, last, pose.way().course) {
+        if let (true, Some(last), TipCourse::Arc(arc)) = (pose.joined, last, pose.way().course) {
             self.arc(&arc, last, pose)?;
-        } else if pose.joined && !matches!(pose.way().turning, Turning::Slerp) && pose.way().course == Course::Straight
+        } else if pose.joined
+            && !matches!(pose.way().turning, Turning::Slerp)
+            && pose.way().course == TipCourse::Straight
         {
             self.lose("how the tool axis turns between two points".to_owned());
         }

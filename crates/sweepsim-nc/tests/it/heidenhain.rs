@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{EventKind, Program, ReadOptions, StockDescription, heidenhain};
 
 fn exact(text: &str) -> Program {
@@ -90,7 +90,7 @@ fn arcs_and_polar_coordinates() {
         let program = exact(&format!("{start}{arc}\n"));
         let last = program.poses.last().unwrap();
         near(last.pose.tip(), end);
-        let Course::Arc(found) = last.way().course else {
+        let TipCourse::Arc(found) = last.way().course else {
             panic!("{arc}")
         };
         assert!(
@@ -102,7 +102,7 @@ fn arcs_and_polar_coordinates() {
     }
     // The larger arc on a radius, about (10, 10).
     let program = exact(&format!("{start}CR X+0 Y+10 R-10 DR-"));
-    let Course::Arc(found) = program.poses.last().unwrap().way().course else {
+    let TipCourse::Arc(found) = program.poses.last().unwrap().way().course else {
         panic!()
     };
     assert!((found.angle().to_degrees() + 270.0).abs() < 1e-9 || (found.angle().to_degrees() - 270.0).abs() < 1e-9);
@@ -114,7 +114,7 @@ fn arcs_and_polar_coordinates() {
     // Tangential: after a line along X, a quarter to the left about (20, 10).
     let program = exact("L X+0 Y+0 Z+0 FMAX\nL X+20 F100\nCT X+30 Y+10\nCT X+20 Y+20");
     for pose in &program.poses[2..] {
-        let Course::Arc(found) = pose.way().course else {
+        let TipCourse::Arc(found) = pose.way().course else {
             panic!()
         };
         near(found.centre(), [20.0, 10.0, 0.0]);
@@ -140,14 +140,14 @@ fn rounded_corners_and_chamfers() {
         near(*found, expected);
     }
     assert_eq!(program.poses.len(), expected.len());
-    let Course::Arc(arc) = program.poses[2].way().course else {
+    let TipCourse::Arc(arc) = program.poses[2].way().course else {
         panic!()
     };
     near(arc.centre(), [15.0, 5.0, 0.0]);
     assert!((arc.angle().to_degrees() - 90.0).abs() < 1e-9);
     // To the right, at 60°: the arc touches both lines.
     let program = exact("L X+0 Y+0 Z+0 FMAX\nL X+30 F100\nRND R3\nL IX-10 IY-17.320508075688775");
-    let Course::Arc(arc) = program.poses[2].way().course else {
+    let TipCourse::Arc(arc) = program.poses[2].way().course else {
         panic!()
     };
     near(arc.centre(), [30.0 - 3.0 / 30_f64.to_radians().tan(), -3.0, 0.0]);

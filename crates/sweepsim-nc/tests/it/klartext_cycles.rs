@@ -1,6 +1,6 @@
 //! Cycles of Heidenhain's controls, against their moves by hand.
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{EventKind, Program, ReadOptions, heidenhain};
 
 const START: &str = "TOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S9\nL X+10 Y+20 Z+50 R0 FMAX\n";
@@ -96,7 +96,7 @@ fn bore_milling_is_a_helix() {
         let turns: Vec<f64> = program.poses[3..5]
             .iter()
             .map(|pose| match pose.way().course {
-                Course::Arc(arc) => arc.angle() * arc.normal()[2] / std::f64::consts::TAU,
+                TipCourse::Arc(arc) => arc.angle() * arc.normal()[2] / std::f64::consts::TAU,
                 _ => panic!("an arc"),
             })
             .collect();

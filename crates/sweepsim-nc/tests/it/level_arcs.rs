@@ -1,6 +1,6 @@
 //! Arcs that are kept because they are cheaper than their chords: about z and in planes along z, with the tool along z, and about the axis of a tool that leans.
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Machine, Program, ReadOptions, apt, gcode, heidenhain, siemens};
 
 fn options() -> ReadOptions {
@@ -12,7 +12,9 @@ fn options() -> ReadOptions {
 /// The number of arcs, and that of straight moves.
 fn courses(program: &Program) -> [usize; 2] {
     let moves = program.poses.iter().skip(1);
-    let arcs = moves.filter(|pose| matches!(pose.way().course, Course::Arc(_))).count();
+    let arcs = moves
+        .filter(|pose| matches!(pose.way().course, TipCourse::Arc(_)))
+        .count();
     [arcs, program.poses.len() - 1 - arcs]
 }
 
@@ -143,7 +145,7 @@ fn rounded_arcs_are_kept_as_circles() {
     let text = "G21 G90 G17 F100\nG0 X3 Y0 Z0\nG3 X1.852 Y2.360 I-3 J0\nM2\n";
     let program = gcode::read(text, &options()).unwrap();
     let [from, to] = [&program.poses[0], &program.poses[1]];
-    let Course::Arc(arc) = to.way().course else {
+    let TipCourse::Arc(arc) = to.way().course else {
         panic!("chords")
     };
     let [x, y, _] = arc.centre();

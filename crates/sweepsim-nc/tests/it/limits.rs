@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{AxisFault, Kinematics, Machine, Position, Program, Rapid, ReadOptions, check, gcode};
 
 /// X, Y, Z at which the tip is at a point, at given angles: the forward chain is affine in them.
@@ -21,13 +21,13 @@ fn solve(machine: &Kinematics, tip: Vector3<f64>, abc: [f64; 3], length: f64) ->
 fn between(program: &Program, machine: &Kinematics, pose: usize, s: f64) -> Position {
     let (before, end) = (&program.poses[pose - 1], &program.poses[pose]);
     let (from, to) = (&program.positions[pose - 1], &program.positions[pose]);
-    if !end.tip_control && !matches!(end.way().course, Course::Arc(_)) {
+    if !end.tip_control && !matches!(end.way().course, TipCourse::Arc(_)) {
         return from.towards(to, s);
     }
     let (a, b): ([f64; 3], [f64; 3]) = (before.pose.tip(), end.pose.tip());
     let (a, b) = (Vector3::from(a), Vector3::from(b));
     let tip = match end.way().course {
-        Course::Arc(arc) => {
+        TipCourse::Arc(arc) => {
             let (c, n) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
             let out = a - c;
             let along = n * n.dot(&out);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sweepsim_motion::{Course, Turning};
+use sweepsim_motion::{TipCourse, Turning};
 use sweepsim_nc::{AxisLaw, Machine, ReadOptions, gcode};
 
 const PROGRAM: &str =
@@ -23,7 +23,7 @@ fn programs_as_machines_run_them() {
     assert_eq!(turned(1), ([0.0, 0.0], [30.0, 350.0]));
     assert_eq!(turned(2), ([30.0, 350.0], [30.0, 700.0]));
     match (ways[2].course, ways[3].course) {
-        (Course::Arc(half), Course::Arc(full)) => {
+        (TipCourse::Arc(half), TipCourse::Arc(full)) => {
             assert!((half.angle() - PI).abs() < 1e-12 && (full.angle() + TAU).abs() < 1e-12);
             assert_eq!(half.centre(), [10.0, 10.0, 5.0]);
         }
@@ -46,7 +46,7 @@ fn programs_as_machines_run_them() {
         let text = format!("G21 G90\nG0 X0 Y0 Z0\nG1 Z0.5\nG1 Z0\n{plane}\n");
         let program = gcode::read(&text, &options).unwrap();
         let way = program.poses[program.poses.len() - 1].way();
-        assert!(matches!(way.course, Course::Arc(arc) if arc.normal() == normal && arc.angle() > 0.0));
+        assert!(matches!(way.course, TipCourse::Arc(arc) if arc.normal() == normal && arc.angle() > 0.0));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::Program;
 
 /// A piece of a programmed contour.
@@ -69,7 +69,7 @@ pub fn samples(program: &Program, poses: std::ops::Range<usize>) -> Vec<[f64; 2]
         for k in 0..=20 {
             let s = f64::from(k) / 20.0;
             points.push(match pair[1].way().course {
-                Course::Arc(arc) => {
+                TipCourse::Arc(arc) => {
                     let (c, turn) = (arc.centre(), s * arc.angle() * arc.normal()[2].signum());
                     let (x, y) = (a[0] - c[0], a[1] - c[1]);
                     [

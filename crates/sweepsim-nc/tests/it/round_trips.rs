@@ -1,7 +1,7 @@
 //! Programs written and read again.
 
 use proptest::prelude::*;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Program, ReadOptions, apt, gcode, table, write};
 
 pub(crate) fn options() -> ReadOptions {
@@ -31,8 +31,8 @@ fn same(a: &Program, b: &Program) {
         let axes = (x.pose.axis(), y.pose.axis());
         assert!(axes.0.iter().zip(axes.1).all(|(a, b)| (a - b).abs() < 1e-15));
         match (x.way().course, y.way().course) {
-            (Course::Straight, Course::Straight) => {}
-            (Course::Arc(a), Course::Arc(b)) => {
+            (TipCourse::Straight, TipCourse::Straight) => {}
+            (TipCourse::Arc(a), TipCourse::Arc(b)) => {
                 let sense = a.angle().signum() * b.angle().signum();
                 assert!(
                     (a.angle() - sense * b.angle()).abs() < 1e-9 * a.angle().abs().max(1.0),

@@ -64,7 +64,7 @@ fn arcs() {
         let program = exact(&format!("{start}{arc}\n"));
         let last = program.poses.last().unwrap();
         near(last.pose.tip(), [0.0, 10.0, 0.0]);
-        let sweepsim_motion::Course::Arc(found) = last.way().course else {
+        let sweepsim_motion::TipCourse::Arc(found) = last.way().course else {
             panic!("{arc}")
         };
         near(found.centre(), [0.0; 3]);
@@ -79,7 +79,7 @@ fn arcs() {
         let program = exact(&format!("{start}{arc}\n"));
         let last = program.poses.last().unwrap();
         near(last.pose.tip(), [10.0, 0.0, z]);
-        let sweepsim_motion::Course::Arc(found) = last.way().course else {
+        let sweepsim_motion::TipCourse::Arc(found) = last.way().course else {
             panic!("{arc}")
         };
         assert!((found.angle() / std::f64::consts::TAU - turns).abs() < 1e-12);
@@ -103,7 +103,7 @@ fn frames() {
     ends_at("MIRROR X0\nG0 X1 Y1 Z1", [-1.0, 1.0, 1.0]);
     // A mirrored arc turns the other way: it still ends where it should, about the mirrored centre.
     let program = exact("MIRROR X0\nG0 X10 Y0 Z0\nG3 X0 Y10 I-10 J0");
-    let sweepsim_motion::Course::Arc(arc) = program.poses.last().unwrap().way().course else {
+    let sweepsim_motion::TipCourse::Arc(arc) = program.poses.last().unwrap().way().course else {
         panic!()
     };
     let signed = arc.angle() * arc.normal()[2];

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Machine, NcError, Position, Program, ReadOptions, check, gcode, heidenhain, siemens, write};
 
 fn options(name: &str) -> ReadOptions {
@@ -138,7 +138,7 @@ fn posted_arcs_come_back() {
                 let off = |a: [f64; 3], b: [f64; 3]| (Vector3::from(a) - Vector3::from(b)).norm();
                 assert!(off(a.pose.tip(), b.pose.tip()) < 1e-9, "{name}: {posted}");
                 match (a.way().course, b.way().course) {
-                    (Course::Arc(a), Course::Arc(b)) => {
+                    (TipCourse::Arc(a), TipCourse::Arc(b)) => {
                         assert!(
                             off(a.centre(), b.centre()) < 1e-9 && off(a.normal(), b.normal()) < 1e-9,
                             "{name}: {posted}"

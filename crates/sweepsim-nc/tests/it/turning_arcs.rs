@@ -1,6 +1,6 @@
 //! Arcs of the tip under tip control while an axis turns: the same from all controls.
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Controller, Machine, NcError, Program, ReadOptions, gcode, heidenhain, siemens};
 
 /// A quarter of a circle, in which B turns from 0° to 40°, and a helix of one and a half turns, in which it turns back and C turns on, in three languages.
@@ -47,7 +47,9 @@ fn the_same_exact_poses_from_all_controls() {
                 .map(|pose| (pose.pose.axis(), pose.way(), pose.rapid, pose.feed, pose.tip_control))
                 .collect();
             assert_eq!(poses.len(), 4, "{machine:?} {control}");
-            let arcs = poses.iter().filter(|(_, way, ..)| matches!(way.course, Course::Arc(_)));
+            let arcs = poses
+                .iter()
+                .filter(|(_, way, ..)| matches!(way.course, TipCourse::Arc(_)));
             assert_eq!(arcs.count(), 2, "{machine:?} {control}");
             assert_eq!(
                 *expected.get_or_insert_with(|| poses.clone()),
@@ -78,7 +80,7 @@ fn chords_unless_all_arcs_are_kept() {
             program
                 .poses
                 .iter()
-                .all(|pose| !matches!(pose.way().course, Course::Arc(_)))
+                .all(|pose| !matches!(pose.way().course, TipCourse::Arc(_)))
         );
         program.poses.len()
     });

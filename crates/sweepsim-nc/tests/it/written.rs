@@ -1,7 +1,7 @@
 //! Programs written as G-code of each control, and read again.
 
 use proptest::prelude::*;
-use sweepsim_motion::{Course, Move, Pose, TipArc};
+use sweepsim_motion::{Move, Pose, TipArc, TipCourse};
 use sweepsim_nc::{
     Controller, Coolant, CutterKind, Event, EventKind, FeedMode, Machine, Program, ProgramPose, Spindle,
     StockDescription, apt, gcode, heidenhain, siemens, write,
@@ -62,8 +62,8 @@ fn same(a: &Program, b: &Program, text: &str) {
             (f, g) => assert_eq!(f, g, "{place}"),
         }
         match (x.way().course, y.way().course) {
-            (Course::Straight, Course::Straight) => {}
-            (Course::Arc(p), Course::Arc(q)) => {
+            (TipCourse::Straight, TipCourse::Straight) => {}
+            (TipCourse::Arc(p), TipCourse::Arc(q)) => {
                 let sense = p
                     .normal()
                     .iter()
@@ -367,8 +367,8 @@ fn rounded_numbers() {
             .poses
             .iter()
             .filter_map(|pose| match pose.way().course {
-                Course::Arc(arc) => Some(arc.angle()),
-                Course::Straight => None,
+                TipCourse::Arc(arc) => Some(arc.angle()),
+                TipCourse::Straight => None,
             })
             .collect();
         assert_eq!(arcs.len(), 1, "{text}");

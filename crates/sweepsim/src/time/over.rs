@@ -152,7 +152,7 @@ fn extreme(
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sweepsim_motion::{Course, Move, Path, Pose, TipArc, Tool, Turning};
+    use sweepsim_motion::{Move, Path, Pose, TipArc, TipCourse, Tool, Turning};
 
     /// A straight move, an arc that the tool turns with, or a helix, of a length of ten to a million.
     fn segments(kind: usize, size: f64, [x, y, z]: [f64; 3]) -> Vec<Segment> {
@@ -162,8 +162,8 @@ mod tests {
         );
         let pose = |tip: [f64; 3], axis: [f64; 3]| Pose::new(tip, axis).unwrap();
         let course = match kind {
-            0 | 1 => Course::Straight,
-            _ => Course::Arc(TipArc::between([size, x, 0.0], [x, size, y], [0.0; 3], [0.0, 0.0, 1.0], 1).unwrap()),
+            0 | 1 => TipCourse::Straight,
+            _ => TipCourse::Arc(TipArc::between([size, x, 0.0], [x, size, y], [0.0; 3], [0.0, 0.0, 1.0], 1).unwrap()),
         };
         let (from, to) = if kind < 2 {
             (from, to)

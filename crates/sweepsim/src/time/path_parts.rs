@@ -6,7 +6,7 @@ use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Course, Path, Segment, Turning};
+use sweepsim_motion::{Path, Segment, TipCourse, Turning};
 
 /// A motion, and its place in the path.
 #[derive(Clone, Debug)]
@@ -198,7 +198,7 @@ pub(crate) fn parts(
 /// stay in one plane to the last digit.
 fn exact_plane(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
     let way = path.way(number);
-    let Course::Arc(arc) = way.course else { return None };
+    let TipCourse::Arc(arc) = way.course else { return None };
     let poses = [path.pose(number), path.pose(number + 1)];
     let still = match way.turning {
         Turning::Slerp | Turning::Even => true,
@@ -312,7 +312,7 @@ mod tests {
             } else {
                 Turning::Slerp
             };
-            let course = Course::Straight;
+            let course = TipCourse::Straight;
             builder.push(Pose::new(tip, table.axis(angles)).unwrap(), Move { course, turning });
         }
         let path = builder.finish(Law::Slerp).unwrap();

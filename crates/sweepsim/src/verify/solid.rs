@@ -246,7 +246,7 @@ impl<'a> MovingSolid<'a> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
+    use sweepsim_motion::{Move, Pose, TipArc, TipCourse, Turning};
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
@@ -257,7 +257,7 @@ mod tests {
             let at_rest = Pose::new([4.0 + radius, 3.0, -7.0], [0.0, 0.0, 1.0]).unwrap();
             let tip = at_rest.tip();
             let arc = TipArc::between(tip, tip, [4.0, 3.0, -7.0], [0.0, 0.0, 1.0], 1).unwrap();
-            let circle = Move { course: Course::Arc(arc), turning: Turning::Even };
+            let circle = Move { course: TipCourse::Arc(arc), turning: Turning::Even };
             let path = Path::with_moves(vec![at_rest, at_rest], vec![circle]).unwrap();
             let grid = Grid::new([-20.0, -20.0], [28.0, 26.0], [96, 92]).unwrap();
             let (tool, options) = (Tool::flat(6.0, 26.0).unwrap(), Options::default());

@@ -7,7 +7,7 @@
 use crate::far_and_fine::difference;
 use sweepsim::{Method, Options, Statistics, sweep};
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Apt, Course, Law, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
+use sweepsim_motion::{Apt, Law, Move, Path, Pose, RotaryTable, TipArc, TipCourse, Tool, Turning};
 
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 /// From far to none at all.
@@ -41,7 +41,7 @@ pub fn through(poses: Vec<Pose>, law: Law) -> Path {
 pub fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
     let (s, c) = 1.745_f64.sin_cos();
     let (from, to) = ([radius, 0.0, 0.0], [radius * c, radius * s, rise]);
-    let course = Course::Arc(TipArc::between(from, to, [0.0; 3], UP, 1).expect("an arc"));
+    let course = TipCourse::Arc(TipArc::between(from, to, [0.0; 3], UP, 1).expect("an arc"));
     let poses = vec![pose(from, axes[0]), pose(to, axes[1])];
     Path::with_moves(poses, vec![Move { course, turning }]).expect("a path")
 }

@@ -5,7 +5,7 @@ use crate::brute_force::corpus::lean;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Course, Law, Move, Path, Pose, RotaryTable, SplineMotion, TipArc, Turning};
+use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, SplineMotion, TipArc, TipCourse, Turning};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 use sweepsim_tests::oracle::{Motion, Place, Placement};
 
@@ -274,7 +274,7 @@ pub fn motions() -> Vec<Named> {
                 pose([1.7, 0.0, 0.0], RotaryTable::Ac.axis([-25.0, 90.0])),
             ],
             vec![Move {
-                course: Course::Arc(TipArc::between([0.0, 1.7, 0.0], [1.7, 0.0, 0.0], o, UP, -1).expect("an arc")),
+                course: TipCourse::Arc(TipArc::between([0.0, 1.7, 0.0], [1.7, 0.0, 0.0], o, UP, -1).expect("an arc")),
                 turning: Turning::Rotary {
                     table: RotaryTable::Ac,
                     from: [-25.0, 0.0],

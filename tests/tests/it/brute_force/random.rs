@@ -14,7 +14,7 @@ use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use std::fmt;
 use sweepsim::{Method, Sweep};
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Course, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
+use sweepsim_motion::{Move, Path, Pose, RotaryTable, TipArc, TipCourse, Tool, Turning};
 use sweepsim_tests::oracle::Motion;
 
 /// A motion of one kind.
@@ -64,10 +64,10 @@ impl Drawn {
             other => [other; 2],
         };
         let course = match moves[0].course {
-            Course::Straight => [Course::Straight; 2],
-            Course::Arc(arc) => [part, 1.0 - part].map(|share| {
+            TipCourse::Straight => [TipCourse::Straight; 2],
+            TipCourse::Arc(arc) => [part, 1.0 - part].map(|share| {
                 let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
-                Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
+                TipCourse::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
             }),
         };
         let axis = match turning[0] {
@@ -96,11 +96,11 @@ impl Drawn {
                 let place = |p: &Pose| pose((Vector3::from(p.tip()) + by).into(), p.axis());
                 let shift = |way: &Move| Move {
                     course: match way.course {
-                        Course::Straight => Course::Straight,
-                        Course::Arc(arc) => {
+                        TipCourse::Straight => TipCourse::Straight,
+                        TipCourse::Arc(arc) => {
                             let normal = Vector3::from(arc.normal());
                             let centre = Vector3::from(arc.centre()) + by;
-                            Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle()).expect("an arc"))
+                            TipCourse::Arc(TipArc::new(centre.into(), normal.into(), arc.angle()).expect("an arc"))
                         }
                     },
                     turning: way.turning,
@@ -151,13 +151,13 @@ fn moves() -> impl Strategy<Value = Drawn> {
             let [a, b] = angles.map(|(tilt, round): (f64, f64)| [tilt, round]);
             let poses = vec![pose(from, table.axis(a)), pose(to, table.axis(b))];
             let turning = Turning::Rotary { table, from: a, to: b };
-            let course = arc.map_or(Course::Straight, |(centre, normal, angle)| {
-                Course::Arc(TipArc::new(centre, normal, angle).expect("an arc"))
+            let course = arc.map_or(TipCourse::Straight, |(centre, normal, angle)| {
+                TipCourse::Arc(TipArc::new(centre, normal, angle).expect("an arc"))
             });
             // The difference at the end of an arc takes a different course when reversed.
             let poses = match course {
-                Course::Straight => poses,
-                Course::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
+                TipCourse::Straight => poses,
+                TipCourse::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
             };
             Drawn::Moves(poses, vec![Move { course, turning }])
         },

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Course, Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
+use sweepsim_motion::{
+    Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, TipCourse, Tool, Turn, Turning,
+};
 use sweepsim_tests::oracle::Motion;
 
 /// Checks all named motions that `relate` turns into another path, with two tools.
@@ -94,11 +96,13 @@ fn moves_cut_in_two_sweep_the_same() {
                     _ => middle.axis.into(),
                 };
                 let course = match way.course {
-                    Course::Straight => [Course::Straight; 2],
-                    Course::Arc(arc) => {
+                    TipCourse::Straight => [TipCourse::Straight; 2],
+                    TipCourse::Arc(arc) => {
                         let part = |share: f64| {
                             let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
-                            Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
+                            TipCourse::Arc(
+                                TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"),
+                            )
                         };
                         [part(cut), part(1.0 - cut)]
                     }
@@ -126,10 +130,10 @@ fn a_right_angle_about_z_turns_the_volume() {
         let Some(moves) = moves(&named.path) else { continue };
         let turned = moves.iter().map(|way| Move {
             course: match way.course {
-                Course::Straight => Course::Straight,
-                Course::Arc(arc) => {
+                TipCourse::Straight => TipCourse::Straight,
+                TipCourse::Arc(arc) => {
                     let normal = Vector3::from(arc.normal());
-                    Course::Arc(
+                    TipCourse::Arc(
                         TipArc::new(quarter(Vector3::from(arc.centre())), quarter(normal), arc.angle())
                             .expect("an arc"),
                     )

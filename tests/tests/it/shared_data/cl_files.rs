@@ -2,7 +2,7 @@
 
 use super::folder;
 use std::path::PathBuf;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{CutterKind, Program, ReadOptions, StockDescription, read_file, tools};
 
 fn exact(file: &str) -> Program {
@@ -26,7 +26,7 @@ fn arcs(program: &Program) -> usize {
     program
         .poses
         .iter()
-        .filter(|pose| matches!(pose.way().course, Course::Arc(_)))
+        .filter(|pose| matches!(pose.way().course, TipCourse::Arc(_)))
         .count()
 }
 
@@ -92,7 +92,7 @@ fn solidworks() {
         }
         // Straight and full circles: no arc is nearly a full turn without being one.
         for pose in &program.poses {
-            if let Course::Arc(arc) = pose.way().course {
+            if let TipCourse::Arc(arc) = pose.way().course {
                 let rest = std::f64::consts::TAU - arc.angle().abs();
                 assert!(rest.abs() < 1e-9 || rest > 1e-3, "{file}:{}: {rest}", pose.line);
             }
@@ -129,7 +129,7 @@ fn poses_by_hand() {
         .poses
         .iter()
         .filter_map(|pose| match pose.way().course {
-            Course::Arc(arc) if (arc.angle() - std::f64::consts::TAU).abs() < 1e-9 => {
+            TipCourse::Arc(arc) if (arc.angle() - std::f64::consts::TAU).abs() < 1e-9 => {
                 let (tip, centre) = (pose.pose.tip(), arc.centre());
                 Some((tip[0] - centre[0]).hypot(tip[1] - centre[1]))
             }

@@ -2,7 +2,7 @@
 //! 10.5281/zenodo.15735480).
 
 use super::folder;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{EventKind, Program, ProgramPose, ReadOptions, read_file};
 
 struct Known {
@@ -110,7 +110,7 @@ fn poses_by_hand() {
     // N370 G2 X0.0 Y20. I0.0 J-7.495 from X0 Y34.99: half a circle in the plane of G54.
     let half = at(&program, 38);
     near(half.pose.tip(), [0.0, 20.0, -2.0 + 1.0]);
-    let Course::Arc(arc) = half.way().course else {
+    let TipCourse::Arc(arc) = half.way().course else {
         panic!("{half:?}")
     };
     near(arc.centre(), [0.0, 27.495, -1.0]);

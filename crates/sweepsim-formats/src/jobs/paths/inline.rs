@@ -1,6 +1,6 @@
 //! Paths written in the job itself: poses and moves.
 
-use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
+use sweepsim_motion::{Law, Move, Path, PathError, Pose, PoseError, TipArc, TipCourse, Turning};
 
 use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
 
@@ -84,7 +84,7 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
     let mut moves: Vec<Move> = (0..plain.moves()).map(|index| plain.way(index)).collect();
     for (index, arc) in arcs {
         moves[index] = Move {
-            course: Course::Arc(arc),
+            course: TipCourse::Arc(arc),
             turning: match moves[index].turning {
                 Turning::Slerp => Turning::Even,
                 other => other,

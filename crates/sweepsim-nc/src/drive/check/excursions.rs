@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
-use sweepsim_motion::{Course, TipArc};
+use sweepsim_motion::{TipArc, TipCourse};
 
 use crate::machines::{Kinematics, Position};
 use crate::model::program::ProgramPose;
@@ -40,7 +40,7 @@ pub(super) fn excursions(
     for axis in axes {
         let ends = [axis.value(from), axis.value(to)];
         let course = match (pose.way().course, axis.linear) {
-            (Course::Arc(arc), Some(k)) if still => {
+            (TipCourse::Arc(arc), Some(k)) if still => {
                 AxisCourse::of_arc(machine, &arc, before.pose.tip(), pose.pose.tip(), from.abc, k, ends)
             }
             (_, Some(k)) if !still && !linear => AxisCourse::Bent {

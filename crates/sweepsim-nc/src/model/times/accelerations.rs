@@ -7,7 +7,7 @@ use std::iter::Peekable;
 use std::slice::Iter;
 
 use nalgebra::{Matrix3, Vector3, Vector6};
-use sweepsim_motion::{Course, TipArc};
+use sweepsim_motion::{TipArc, TipCourse};
 
 use super::MoveTime;
 use super::profile::{Profile, Stretch};
@@ -203,11 +203,11 @@ impl<'a> Dynamics<'a> {
     fn way(&self, from: &ProgramPose, to: &ProgramPose, ends: [&Position; 2]) -> Option<Way> {
         let turn = Vector3::from(ends[1].abc) - Vector3::from(ends[0].abc);
         let way = match to.way().course {
-            Course::Straight => {
+            TipCourse::Straight => {
                 let shift = Vector3::from(ends[1].xyz) - Vector3::from(ends[0].xyz);
                 self.straight(&joined(&(self.directions[0] * shift), &turn))
             }
-            Course::Arc(arc) => self.arc(&arc, from, to, ends[0].abc, &turn),
+            TipCourse::Arc(arc) => self.arc(&arc, from, to, ends[0].abc, &turn),
         };
         (way.length > 0.0 && way.length.is_finite()).then_some(way)
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use sweepsim_motion::{Course, Pose, TipArc, Turning};
+use sweepsim_motion::{Pose, TipArc, TipCourse, Turning};
 
 use super::arcs::{chords, in_plane, is_whole};
 use super::steps::{Aim, Block, Language, PlaneArc, Step};
@@ -186,7 +186,7 @@ impl<'a> Plan<'a> {
     fn go(&mut self, index: usize, pose: &ProgramPose, language: &mut impl Language) -> Result<(), GcodeError> {
         let from = self.at.filter(|_| pose.joined);
         let to = self.place(index, &pose.pose)?;
-        if let (Course::Arc(arc), Some(from)) = (pose.way().course, from) {
+        if let (TipCourse::Arc(arc), Some(from)) = (pose.way().course, from) {
             return self.arc(index, &arc, from, to, language);
         }
         if pose.joined

@@ -3,14 +3,14 @@
 use super::{exact, read, tips};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{ReadOptions, apt, shortest};
 
 fn angle(text: &str) -> f64 {
     let program = exact(text);
     match program.poses.last().unwrap().way().course {
-        Course::Arc(arc) => arc.angle(),
-        Course::Straight => 0.0,
+        TipCourse::Arc(arc) => arc.angle(),
+        TipCourse::Straight => 0.0,
     }
 }
 
@@ -112,7 +112,7 @@ proptest! {
         let unit = if inch { 25.4 } else { 1.0 };
         let program = exact(&text);
         prop_assert_eq!(program.poses.len(), 2);
-        let Course::Arc(arc) = program.poses[1].way().course else { panic!("an arc") };
+        let TipCourse::Arc(arc) = program.poses[1].way().course else { panic!("an arc") };
         prop_assert!((arc.angle() - turn).abs() < 1e-9);
         let mut options = ReadOptions::default();
         options.arc_tolerance = 0.05;

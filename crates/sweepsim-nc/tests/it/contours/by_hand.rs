@@ -1,6 +1,6 @@
 //! Contours worked out by hand.
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{EventKind, ReadOptions};
 
 use super::{assert_near, options, read, tips};
@@ -243,14 +243,16 @@ fn polar_coordinates_and_tangential_arcs() {
     // An arc about the pole.
     let program = read("F9 G111 X1 Y1\nG0 Z0 AP=0 RP=5\nG3 AP=90\n", false, &exact);
     let last = program.poses.last().unwrap();
-    let Course::Arc(arc) = last.way().course else { panic!() };
+    let TipCourse::Arc(arc) = last.way().course else {
+        panic!()
+    };
     assert_near(&[last.pose.tip(), arc.centre()], &[[1.0, 6.0, 0.0], [1.0, 1.0, 0.0]]);
     // CT continues the line along X with an arc about (10, 5), then that one with another about (10, 0).
     let program = read("F9 G0 X0 Y0 Z0\nG1 X10\nCT X15 Y5\nCT X5 Y5\nG1 X0\n", false, &exact);
     let centres: Vec<[f64; 3]> = program.poses[2..4]
         .iter()
         .map(|pose| match pose.way().course {
-            Course::Arc(arc) => arc.centre(),
+            TipCourse::Arc(arc) => arc.centre(),
             _ => panic!(),
         })
         .collect();

@@ -7,7 +7,7 @@ mod narrow;
 use std::fmt::Write as _;
 
 use proptest::prelude::*;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Program, ReadOptions, ToolOffset, heidenhain, siemens};
 
 use crate::pieces::{Piece, distance_to_point, polygon, rounded_rectangle, samples, star};
@@ -232,7 +232,7 @@ proptest! {
         };
         let _ = samples(&program, 0..program.poses.len());
         prop_assert_eq!(program.poses.len(), 4, "{}", text);
-        let Course::Arc(arc) = program.poses[2].way().course else { panic!("{text}") };
+        let TipCourse::Arc(arc) = program.poses[2].way().course else { panic!("{text}") };
         let c: [f64; 3] = arc.centre();
         let c = [c[0], c[1]];
         let ends: [[f64; 2]; 2] = [1, 2].map(|k: usize| { let tip: [f64; 3] = program.poses[k].pose.tip(); [tip[0], tip[1]] });

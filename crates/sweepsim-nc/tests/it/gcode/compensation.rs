@@ -1,7 +1,7 @@
 //! Cutter compensation against offsets computed independently.
 
 use proptest::prelude::*;
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Controller, ReadOptions, ToolOffset, gcode};
 
 use super::{assert_near, options, program, program_with, tips};
@@ -122,7 +122,7 @@ fn a_square_by_hand() {
         &tips(&outside)[1..5],
         &[[0.0, -1.0, 0.0], [10.0, -1.0, 0.0], [11.0, 0.0, 0.0], [11.0, 10.0, 0.0]],
     );
-    assert!(matches!(outside.poses[3].way().course, Course::Arc(arc) if arc.centre() == [10.0, 0.0, 0.0]));
+    assert!(matches!(outside.poses[3].way().course, TipCourse::Arc(arc) if arc.centre() == [10.0, 0.0, 0.0]));
     // Lines keep the lines of the program; an arc at a corner belongs to the move after it.
     let lines: Vec<usize> = outside.poses.iter().map(|pose| pose.line).collect();
     assert_eq!(lines[..5], [1, 3, 4, 5, 5]);

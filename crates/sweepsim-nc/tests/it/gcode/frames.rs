@@ -17,7 +17,7 @@ fn turned_coordinates() {
     exact.exact_arcs = true;
     let found = program_with(&format!("{start}G68 X0 Y0 R90\nG1 X10 Y0\nG3 X0 Y10 I-10 J0\n"), &exact);
     assert_near(&tips(&found)[1..], &[[0.0, 10.0, 0.0], [-10.0, 0.0, 0.0]]);
-    let sweepsim_motion::Course::Arc(arc) = found.poses[2].way().course else {
+    let sweepsim_motion::TipCourse::Arc(arc) = found.poses[2].way().course else {
         panic!()
     };
     assert!((arc.angle() * arc.normal()[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
@@ -50,7 +50,7 @@ fn scaled_and_mirrored_coordinates() {
         &tips(&found)[1..],
         &[[-5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [1.0, 5.0, 0.0]],
     );
-    let sweepsim_motion::Course::Arc(arc) = found.poses[2].way().course else {
+    let sweepsim_motion::TipCourse::Arc(arc) = found.poses[2].way().course else {
         panic!()
     };
     assert!(arc.angle() * arc.normal()[2] < 0.0 && arc.centre() == [0.0, 0.0, 0.0]);

@@ -1,7 +1,7 @@
 //! Codes that shops use, against moves worked out by hand from the manuals.
 
 use nalgebra::{Rotation3, Vector3};
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Controller, FeedMode, Program, ReadOptions, ToolOffset, gcode};
 
 fn options(controller: Controller) -> ReadOptions {
@@ -260,7 +260,7 @@ fn circular_pockets() {
             .poses
             .iter()
             .filter_map(|pose| match pose.way().course {
-                Course::Arc(arc) if (arc.angle().abs() - std::f64::consts::TAU).abs() < 1e-12 => {
+                TipCourse::Arc(arc) if (arc.angle().abs() - std::f64::consts::TAU).abs() < 1e-12 => {
                     let [x, y, z] = pose.pose.tip();
                     let [cx, cy, _] = arc.centre();
                     assert_eq!((cx, cy), (0.0, 0.0));

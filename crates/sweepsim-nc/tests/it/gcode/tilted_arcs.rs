@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
-use sweepsim_motion::Course;
+use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Controller, Machine, ReadOptions};
 
 use super::{assert_near, options, program_with, tips};
@@ -107,7 +107,7 @@ fn exact_arcs_are_those_of_their_points() {
         let start = format!("G21 G90 F100\nG0 X0 Y0 Z50\n{frame}G0 X0 Y0 Z5\n{}", arc.line(0.0));
         let found = program_with(&format!("{start}{}", arc.text()), &exact);
         let last = found.poses.iter().next_back().unwrap();
-        let Course::Arc(own) = last.way().course else {
+        let TipCourse::Arc(own) = last.way().course else {
             panic!("{frame}: no arc")
         };
         let shares = [0.0, 0.25, 0.5, 1.0];

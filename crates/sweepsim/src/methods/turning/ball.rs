@@ -8,7 +8,7 @@
 //!
 //! along the line. Where the curve of the centre is less curved than the ball, `|C′|² > R |C″|`, each `G` falls wherever it is 0.
 
-use super::course::{Bounds, Moment};
+use super::axis_motion::{Bounds, Moment};
 use super::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
 use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
 use crate::cutter::outline::Ball;

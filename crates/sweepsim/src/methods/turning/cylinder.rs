@@ -15,7 +15,7 @@ mod standing;
 
 pub(super) use standing::standing;
 
-use super::course::{Bounds, Course, Moment};
+use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
@@ -176,8 +176,8 @@ impl Shell for Cylinder {
     }
 
     #[inline]
-    fn pose(&self, course: &Course, t: f64) -> Lean {
-        Lean::during(course, t)
+    fn pose(&self, motion: &AxisMotion, t: f64) -> Lean {
+        Lean::during(motion, t)
     }
 
     #[inline]

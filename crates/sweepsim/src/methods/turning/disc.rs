@@ -8,8 +8,8 @@
 //!
 //! along the line. If the axis travels faster along itself than the rim turns, `F` is never 0.
 
+use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::blocks::{around, blocks, distance};
-use super::course::{Bounds, Course, Moment};
 use super::intervals::Range;
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
@@ -77,10 +77,10 @@ impl Placed {
 }
 
 impl Disc {
-    /// Settles one span of a course, unless it is too long.
+    /// Settles one span of a motion, unless it is too long.
     pub fn settle(
         &self,
-        (course, span): (&Course, &Span),
+        (motion, span): (&AxisMotion, &Span),
         searching: &mut Searching,
         source: &impl Fn(f64) -> Source,
         left: &mut Leftover,
@@ -120,7 +120,7 @@ impl Disc {
                     .all(|placed| placed.arm(line).norm() > 2.0 * self.radii[1]);
                 if beside { Ok(None) } else { Err(Undecided::Close) }
             } else if (ends[0] > 0.0) == falls {
-                self.turn((course, span), line, (ends, &mut last), searching)
+                self.turn((motion, span), line, (ends, &mut last), searching)
             } else {
                 Err(Undecided::Intricate)
             };
@@ -165,7 +165,7 @@ impl Disc {
     /// Where `F` is 0, if that is on the disc.
     fn turn(
         &self,
-        (course, span): (&Course, &Span),
+        (motion, span): (&AxisMotion, &Span),
         line: [f64; 2],
         (ends, last): ([f64; 2], &mut Option<Known>),
         searching: &Searching,
@@ -182,7 +182,7 @@ impl Disc {
             bracket,
             ([true; 2], first),
             |t| {
-                let placed = Placed::new(&course.at(t), self.height);
+                let placed = Placed::new(&motion.at(t), self.height);
                 let arm = placed.arm(line);
                 let f = placed.along(&arm);
                 let rise = f * placed.inverse;

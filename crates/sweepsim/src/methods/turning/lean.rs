@@ -1,6 +1,6 @@
 //! The coordinates of a tool that leans: `α` across its axis in the vertical plane of it, `β` horizontally across both, `ζ` along it.
 
-use super::course::{Course, Moment};
+use super::axis_motion::{AxisMotion, Moment};
 use super::intervals::{Range, add, scaled, sub};
 use nalgebra::Vector3;
 
@@ -45,11 +45,11 @@ impl Lean {
         })
     }
 
-    /// At a time of a course at which the axis leans. With the angular velocity `κ k/w` in these coordinates, `a′` and `a″` are products of its components.
+    /// At a time of a motion at which the axis leans. With the angular velocity `κ k/w` in these coordinates, `a′` and `a″` are products of its components.
     #[inline]
-    pub fn during(course: &Course, t: f64) -> Self {
-        let (axis, spin, slope) = course.axis(t);
-        let [tip, velocity] = course.tip(t);
+    pub fn during(motion: &AxisMotion, t: f64) -> Self {
+        let (axis, spin, slope) = motion.axis(t);
+        let [tip, velocity] = motion.tip(t);
         let s = (axis.x * axis.x + axis.y * axis.y).sqrt();
         let inverse = s.recip();
         let ([ux, uy], k) = ([axis.x * inverse, axis.y * inverse], axis.z);
@@ -124,8 +124,8 @@ mod tests {
         #[test]
         fn both_ways(from in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], to in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], t in 0.0..1.0_f64) {
             let poses = [Pose::new([1.0, -2.0, 0.5], from).unwrap(), Pose::new([4.0, 1.0, 0.0], to).unwrap()];
-            let Some(course) = Course::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
-            let (own, moment) = (Lean::during(&course, t), course.at(t));
+            let Some(motion) = AxisMotion::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
+            let (own, moment) = (Lean::during(&motion, t), motion.at(t));
             let Some(other) = Lean::new(&moment).filter(|lean| lean.tilt[0] > 1e-3) else { return Ok(()) };
             let all = |lean: &Lean| [&lean.tip[..], &lean.tilt, &lean.ahead, &lean.travel, &lean.rate, &lean.bend].concat();
             for (a, b) in all(&own).into_iter().zip(all(&other)) {

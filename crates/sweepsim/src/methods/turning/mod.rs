@@ -5,9 +5,9 @@
 //! time. Its sign at the ends of a short span tells whether it is 0 in between, where a bound of its slope holds for all lines. What is not certain is left to charts, for the lines and the span of
 //! time in question.
 
+mod axis_motion;
 mod ball;
 mod blocks;
-mod course;
 mod cylinder;
 mod disc;
 mod intervals;
@@ -20,8 +20,8 @@ mod zero;
 
 use crate::cutter::outline::{Ball, Outline, Piece, Shape};
 use crate::methods::translation::Collector;
+use axis_motion::{AxisMotion, Moment};
 use blocks::around;
-use course::{Course, Moment};
 use cylinder::{Cylinder, standing};
 use disc::Disc;
 use resting::{Resting, Side};
@@ -115,18 +115,18 @@ pub(crate) fn envelope(
     [patches, edges]: [&mut [bool]; 2],
 ) -> Vec<Leftover> {
     let mut leftovers = Vec::new();
-    let Some(course) = Course::new(segment) else {
+    let Some(motion) = AxisMotion::new(segment) else {
         return leftovers;
     };
     for piece in &outline.pieces {
         let element = Element::Patches(piece.patches.clone());
         match Kind::of(piece) {
-            Some(Kind::Ball(ball)) => ball_along(&ball, &course, &element, &mut leftovers, searching, &source),
+            Some(Kind::Ball(ball)) => ball_along(&ball, &motion, &element, &mut leftovers, searching, &source),
             Some(Kind::Cylinder(cylinder)) => {
-                cylinder_along(&cylinder, &course, &element, &mut leftovers, searching, &source);
+                cylinder_along(&cylinder, &motion, &element, &mut leftovers, searching, &source);
             }
-            Some(Kind::Disc(disc)) => settle(&course, &element, &mut leftovers, |span, left| {
-                disc.settle((&course, span), searching, &source, left)
+            Some(Kind::Disc(disc)) => settle(&motion, &element, &mut leftovers, |span, left| {
+                disc.settle((&motion, span), searching, &source, left)
             }),
             None => continue,
         }
@@ -134,8 +134,8 @@ pub(crate) fn envelope(
     }
     for rim in &outline.rims {
         let element = Element::Edges(rim.edges.clone());
-        let search = RimSearch::new(rim, &course);
-        settle(&course, &element, &mut leftovers, |span, left| {
+        let search = RimSearch::new(rim, &motion);
+        settle(&motion, &element, &mut leftovers, |span, left| {
             search.settle(span, searching, &source, left)
         });
         edges[rim.edges.clone()].fill(true);
@@ -155,13 +155,13 @@ fn is_far(span: &Span, height: f64, radius: f64) -> bool {
 
 fn ball_along(
     ball: &Ball,
-    course: &Course,
+    motion: &AxisMotion,
     element: &Element,
     leftovers: &mut Vec<Leftover>,
     searching: &mut Searching,
     source: &impl Fn(f64) -> Source,
 ) {
-    settle(course, element, leftovers, |span, left| {
+    settle(motion, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
         if !span.last && is_far(span, ball.centre.abs(), ball.radius) {
             return Verdict::Long;
@@ -171,14 +171,14 @@ fn ball_along(
         };
         let [a, b] = ends.map(|moment| ball.at(moment).level());
         let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
-        let mut search = ShellSearch::new((ball, &limits), course, source, left);
+        let mut search = ShellSearch::new((ball, &limits), motion, source, left);
         search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack))
     });
 }
 
 fn cylinder_along(
     cylinder: &Cylinder,
-    course: &Course,
+    motion: &AxisMotion,
     element: &Element,
     leftovers: &mut Vec<Leftover>,
     searching: &mut Searching,
@@ -187,7 +187,7 @@ fn cylinder_along(
     let most = most_sag(searching, cylinder.radius);
     // Heights of points are off by the rounding error over the lean.
     let least = (searching.slack / searching.height_tolerance).clamp(UPRIGHT, STEEP);
-    settle(course, element, leftovers, |span, left| {
+    settle(motion, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
         let lean = span.bounds.lean;
         if lean[1] <= 4.0 * least {
@@ -214,7 +214,7 @@ fn cylinder_along(
         }
         let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
         let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
-        let mut search = ShellSearch::new((cylinder, &limits), course, source, left);
+        let mut search = ShellSearch::new((cylinder, &limits), motion, source, left);
         search.lines(searching, span, around(&[a, b].concat(), wider))
     });
 }

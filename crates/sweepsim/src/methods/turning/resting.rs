@@ -1,8 +1,8 @@
 //! The tool at rest between two motions, of which one turns: where a line meets it, and the signs of `g` before and after.
 
 use super::Searching;
+use super::axis_motion::Moment;
 use super::blocks::{around, blocks, distance};
-use super::course::Moment;
 use super::cylinder::Cylinder;
 use super::disc::{Disc, Placed};
 use super::intervals::{Range, Sign};

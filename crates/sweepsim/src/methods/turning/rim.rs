@@ -9,8 +9,8 @@
 //! along the line. With `e = (d, −⟨d, h⟩)`, `h = a_h/a_z`, `E″/2 = |c_h′|² − ⟨d, c_h″⟩ + f′² + f f″`, `f = ⟨d, h⟩`: where the way of the centre is straighter than the circle, seen along the dexels, `E` is
 //! convex, and the signs of `E` and its derivative at the ends of a span tell how often it is 0.
 
+use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::blocks::{around, blocks, distance};
-use super::course::{Bounds, Course, Moment};
 use super::disc::Placed;
 use super::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
 use super::shell::Undecided;
@@ -83,7 +83,7 @@ impl Facing {
 /// A search of a rim along a span.
 pub(super) struct RimSearch<'a> {
     rim: &'a Rim,
-    course: &'a Course,
+    motion: &'a AxisMotion,
     /// How fast velocities turn.
     turning: f64,
     /// Where lines last came into the circle, and where they went out of it.
@@ -91,11 +91,11 @@ pub(super) struct RimSearch<'a> {
 }
 
 impl<'a> RimSearch<'a> {
-    pub fn new(rim: &'a Rim, course: &'a Course) -> Self {
+    pub fn new(rim: &'a Rim, motion: &'a AxisMotion) -> Self {
         Self {
             rim,
-            course,
-            turning: course.bounds([&course.at(0.0), &course.at(1.0)]).turning(),
+            motion,
+            turning: motion.bounds([&motion.at(0.0), &motion.at(1.0)]).turning(),
             last: Default::default(),
         }
     }
@@ -224,7 +224,7 @@ impl<'a> RimSearch<'a> {
                 } else {
                     0.5 * (from.t + to.t)
                 };
-                let placed = Placed::new(&self.course.at(t), self.rim.height);
+                let placed = Placed::new(&self.motion.at(t), self.rim.height);
                 let middle = self.value(&placed, t, line);
                 self.between(place, line, [from, middle], searching, source, depth + 1)?;
                 self.between(place, line, [middle, to], searching, source, depth + 1)
@@ -257,7 +257,7 @@ impl<'a> RimSearch<'a> {
             bracket,
             ([true; 2], first),
             |t| {
-                let placed = Placed::new(&self.course.at(t), self.rim.height);
+                let placed = Placed::new(&self.motion.at(t), self.rim.height);
                 let arm = placed.arm(line);
                 let rise = placed.along(&arm) / placed.axis.z;
                 Some(Sample {

@@ -8,7 +8,7 @@ mod search;
 
 pub(super) use search::ShellSearch;
 
-use super::course::{Course, Moment};
+use super::axis_motion::{AxisMotion, Moment};
 use super::intervals::{Range, Sign};
 use nalgebra::Vector3;
 
@@ -103,9 +103,9 @@ pub(super) trait Shell {
 
     fn at(&self, moment: &Moment) -> Self::Posed;
 
-    /// The same, at a time of a course.
-    fn pose(&self, course: &Course, t: f64) -> Self::Posed {
-        self.at(&course.at(t))
+    /// The same, at a time of a motion.
+    fn pose(&self, motion: &AxisMotion, t: f64) -> Self::Posed {
+        self.at(&motion.at(t))
     }
 
     fn meet(&self, at: &Self::Posed, line: [f64; 2]) -> Meeting;

@@ -1,6 +1,6 @@
-//! A course is divided into spans of time that are short enough for what has to be certain.
+//! A motion is divided into spans of time that are short enough for what has to be certain.
 
-use super::course::{Bounds, Course, Moment};
+use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::{Element, Leftover};
 
 /// Spans are halved this many times at most,
@@ -30,20 +30,20 @@ pub(super) enum Verdict {
     Intricate,
 }
 
-/// Settles a course span by span. What remains is left to charts for all lines.
+/// Settles a motion span by span. What remains is left to charts for all lines.
 pub(super) fn settle(
-    course: &Course,
+    motion: &AxisMotion,
     element: &Element,
     leftovers: &mut Vec<Leftover>,
     mut settle: impl FnMut(&Span, &mut Leftover) -> Verdict,
 ) {
     // In the order of time: halves are put back, the later one first.
-    let mut spans = vec![(course.at(0.0), course.at(1.0), 0)];
+    let mut spans = vec![(motion.at(0.0), motion.at(1.0), 0)];
     while let Some((from, to, depth)) = spans.pop() {
         let span = Span {
             from,
             to,
-            bounds: course.bounds([&from, &to]),
+            bounds: motion.bounds([&from, &to]),
             last: depth >= DEEPEST,
         };
         let mut left = Leftover::new(element, [from.t, to.t]);
@@ -57,7 +57,7 @@ pub(super) fn settle(
             Verdict::Settled if left.lines.is_empty() => {}
             Verdict::Settled => leftovers.push(left),
             Verdict::Long | Verdict::Upright if depth < deepest => {
-                let middle = course.at(0.5 * (from.t + to.t));
+                let middle = motion.at(0.5 * (from.t + to.t));
                 spans.push((middle, to, depth + 1));
                 spans.push((from, middle, depth + 1));
             }

@@ -4,7 +4,7 @@ use super::vertical_arc::circle;
 use nalgebra::{Rotation3, Unit, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Course, Path, Segment, TipArc, Turning};
+use sweepsim_motion::{Path, Segment, TipArc, TipCourse, Turning};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
@@ -64,7 +64,7 @@ impl ArcAboutAxis {
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<(Self, Segment)>> {
         let way = path.way(number);
-        let Course::Arc(arc) = way.course else { return None };
+        let TipCourse::Arc(arc) = way.course else { return None };
         let still = match way.turning {
             Turning::Slerp | Turning::Even => true,
             Turning::Rotary { from, to, .. } => from == to,

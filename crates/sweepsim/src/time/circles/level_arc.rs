@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation2, Rotation3, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Course, Move, Path, Pose, Segment, TipArc, Turning};
+use sweepsim_motion::{Move, Path, Pose, Segment, TipArc, TipCourse, Turning};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
@@ -75,7 +75,7 @@ impl LevelArc {
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<(Self, Segment)>> {
         let way = path.way(number);
-        let Course::Arc(arc) = way.course else { return None };
+        let TipCourse::Arc(arc) = way.course else { return None };
         let still = match way.turning {
             Turning::Slerp | Turning::Even => true,
             Turning::Rotary { from, to, .. } => from == to,

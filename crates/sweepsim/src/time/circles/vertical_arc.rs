@@ -3,7 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Course, Move, Path, Pose, Segment, TipArc, Turning};
+use sweepsim_motion::{Move, Path, Pose, Segment, TipArc, TipCourse, Turning};
 
 /// Arcs that go less than this many tip displacements across the dexels have no reliable plane.
 const SHORTEST: f64 = 1e3;
@@ -147,7 +147,7 @@ impl VerticalArc {
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<VerticalArcPart>> {
         let way = path.way(number);
-        let Course::Arc(arc) = way.course else { return None };
+        let TipCourse::Arc(arc) = way.course else { return None };
         let ends = [path.pose(number), path.pose(number + 1)];
         let axis = frame.turn_from_world(ends[0].axis());
         let still = match way.turning {

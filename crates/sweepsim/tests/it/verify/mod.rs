@@ -14,7 +14,7 @@ use by_force::{Case, Cylinder, pose};
 use std::ops::ControlFlow;
 use sweepsim::prelude::*;
 use sweepsim::verify::{MoveState, Scene, ToolPath, VerifyOptions, verify};
-use sweepsim_motion::{Assembly, Course, Move, RotaryTable, TipArc, Turning};
+use sweepsim_motion::{Assembly, Move, RotaryTable, TipArc, TipCourse, Turning};
 
 /// SplitMix64.
 struct Random(u64);
@@ -150,9 +150,9 @@ fn collisions_in_moves_of_other_kinds() {
             pose([0.0, 0.0, -1.0], end),
         ];
         case.moves = vec![
-            way(Course::Arc(arc), Turning::Even),
-            way(Course::Straight, Turning::Even),
-            way(Course::Straight, rotary),
+            way(TipCourse::Arc(arc), Turning::Even),
+            way(TipCourse::Straight, Turning::Even),
+            way(TipCourse::Straight, rotary),
         ];
         case.states = vec![MoveState::FEED; 3];
         (case.clamp, case.target) = (None, None);

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use sweepsim::nalgebra::Vector3;
 use sweepsim::prelude::*;
 use sweepsim::verify::{MoveRemoval, Scene, ToolPath, VerifyOptions, verify};
-use sweepsim_motion::{Assembly, Course, Move, TipArc, Turning};
+use sweepsim_motion::{Assembly, Move, TipArc, TipCourse, Turning};
 
 const RADIUS: f64 = 3.0;
 
@@ -115,7 +115,7 @@ fn engagement_on_voxels() {
             let centre = [start[0] - 4.0, start[1], start[2]];
             let end = [start[0] - 4.0, start[1] + 4.0, start[2] - random.within(0.0, 1.0)];
             let up = [0.0, 0.0, 1.0];
-            let course = Course::Arc(TipArc::between(start, end, centre, up, 1).unwrap());
+            let course = TipCourse::Arc(TipArc::between(start, end, centre, up, 1).unwrap());
             (
                 vec![pose(start, up), pose(end, up)],
                 Move {

@@ -1,6 +1,6 @@
 //! A patch, seen in the coordinates of a move.
 
-use super::course::Directions;
+use super::directed_motion::Directions;
 use super::polar::Centre;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};

@@ -2,7 +2,7 @@
 
 use super::super::Collector;
 use super::chart::{Chart, Region, Witness};
-use super::course::Course;
+use super::directed_motion::DirectedMotion;
 use super::face::{Curve, Sight};
 use super::knot::{Knot, Quintic, Seen};
 use super::span::{Graph, Known, Span, Spans, is_absent};
@@ -28,7 +28,7 @@ pub(super) struct Target {
 /// The search of lines over charts.
 pub(super) struct Lines<'a, 'b, S, C> {
     pub curve: &'a C,
-    pub course: &'a Course,
+    pub motion: &'a DirectedMotion,
     pub collector: &'a mut Collector<'b>,
     pub source: &'a S,
     /// Heights this close are the same.
@@ -55,13 +55,13 @@ pub(super) struct Over<'a, 'b, 'c, S, C> {
 impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
     /// The ranges of `p` and `q` of the lines that a cell may meet on its way.
     pub fn reach(&self, [p, q]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
-        [[p.0, p.1], [q.0, q.1 + self.course.length]]
+        [[p.0, p.1], [q.0, q.1 + self.motion.length]]
     }
 
     /// Leaves the lines of a window open.
     pub fn leave(&mut self, window: [[f64; 2]; 2]) {
         let lines = self.collector.lines;
-        self.course
+        self.motion
             .ground
             .each(lines, window, |line, _| self.collector.open(line));
     }
@@ -70,7 +70,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
     pub fn sight(&mut self, chart: &Chart, at: [f64; 2]) -> (Sight, Witness) {
         let mut sight = self.curve.at(chart.point(at));
         self.evaluations += 1;
-        let q = self.course.ground.near(sight.place[0], self.middle);
+        let q = self.motion.ground.near(sight.place[0], self.middle);
         sight.place[0] = q;
         let witness = Witness {
             at,
@@ -83,7 +83,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
     /// The lines over a chart.
     pub fn chart(&mut self, chart: &Chart, window: [[f64; 2]; 2]) {
         let [_, [q_low, q_high]] = window;
-        self.middle = 0.5 * (q_low + q_high - self.course.length);
+        self.middle = 0.5 * (q_low + q_high - self.motion.length);
         let (_, centre) = self.sight(chart, [0.0; 2]);
         let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
         // As in `charts/`: `R` bounds how much the derivatives change over the chart.
@@ -110,7 +110,7 @@ pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
 impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The lines of a window.
     fn window(&mut self, mut window: [[f64; 2]; 2]) {
-        let (lines, ground) = (self.lines.collector.lines, &self.lines.course.ground);
+        let (lines, ground) = (self.lines.collector.lines, &self.lines.motion.ground);
         self.targets.clear();
         let mut spans = None;
         if ground.are_many(lines, window, MANY) {
@@ -127,7 +127,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                 return;
             }
             let region = self.chart.region(&self.centre, [target.p, 0.0], &Region::WHOLE);
-            if !region.is_empty() && meets(self.chart.q(&self.centre, &region), target.q, self.lines.course.length) {
+            if !region.is_empty() && meets(self.chart.q(&self.centre, &region), target.q, self.lines.motion.length) {
                 self.targets.push(target);
             }
         });
@@ -139,7 +139,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The curve over a window of many lines.
     fn spans(&mut self, [p, [q_low, q_high]]: [[f64; 2]; 2]) -> Vec<Span> {
         let lines = self.lines.collector.lines;
-        let across = (q_high - q_low) * self.lines.course.ground.scale(0.5 * (p[0] + p[1]));
+        let across = (q_high - q_low) * self.lines.motion.ground.scale(0.5 * (p[0] + p[1]));
         let density = lines.scale(0).1 * lines.scale(1).1 * across;
         let least = f64::max(FEW as f64 / density, (p[1] - p[0]) / SPANS);
         let mut spans = Vec::new();
@@ -201,7 +201,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (knot, range) = graph.near(p);
         if let Some((lo, hi)) = range {
-            let (length, margin) = (self.lines.course.length, self.lines.course.ground.error(p));
+            let (length, margin) = (self.lines.motion.length, self.lines.motion.ground.error(p));
             if q - lo < -margin || q - hi > length + margin {
                 return true;
             }
@@ -268,9 +268,9 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     fn is_smooth(&self, larger: &Quintic, found: &Knot) -> bool {
         const LESS: f64 = 12.0;
         let [[q, _], [z, _]] = larger.at(found.p);
-        let course = self.lines.course;
-        let steepness = course.rise.abs() / course.length;
-        let scale = course.ground.scale(found.p);
+        let motion = self.lines.motion;
+        let steepness = motion.rise.abs() / motion.length;
+        let scale = motion.ground.scale(found.p);
         let off = (z - found.place[1]).abs() + (scale + steepness) * (q - found.place[0]).abs();
         off <= LESS * self.lines.height_tolerance
     }
@@ -282,12 +282,12 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             return true;
         }
         let range = self.chart.q(&nearest.witness, &region);
-        let course = self.lines.course;
-        let margin = course.ground.error(p);
-        if !meets((range.0 - margin, range.1 + margin), q, course.length) {
+        let motion = self.lines.motion;
+        let margin = motion.ground.error(p);
+        if !meets((range.0 - margin, range.1 + margin), q, motion.length) {
             return true;
         }
-        let met = q - range.1 > margin && q - range.0 < course.length - margin;
+        let met = q - range.1 > margin && q - range.0 < motion.length - margin;
         if !(met && region.is_inside()) {
             return false;
         }
@@ -297,10 +297,10 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
 
     /// Puts a crossing of a line that is met by a polynomial; `outside`: a normal nearby.
     fn follow(&mut self, curve: &Quintic, (p, q, line): (f64, f64, u32), outside: [f64; 3]) {
-        let course = self.lines.course;
+        let motion = self.lines.motion;
         let [[own, dq], [z, dz]] = curve.at(p);
-        let scale = course.ground.scale(p);
-        let [length, rise] = [course.length, course.rise];
+        let scale = motion.ground.scale(p);
+        let [length, rise] = [motion.length, motion.rise];
         // Across the curve and the way.
         let normal = [-rise, scale * (rise * dq - length * dz), scale * length];
         let is_outwards = (0..3).map(|k| normal[k] * outside[k]).sum::<f64>() >= 0.0;
@@ -309,10 +309,10 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     }
 
     pub fn put(&mut self, (line, q): (u32, f64), ahead: f64, z: f64, normal: [f64; 3]) {
-        let course = self.lines.course;
-        let share = (ahead / course.length).clamp(0.0, 1.0);
-        let z = course.from + share * course.rise + z;
-        let normal = course.ground.in_space(q, normal);
+        let motion = self.lines.motion;
+        let share = (ahead / motion.length).clamp(0.0, 1.0);
+        let z = motion.from + share * motion.rise + z;
+        let normal = motion.ground.in_space(q, normal);
         let size = normal.iter().map(|c| c * c).sum::<f64>();
         let scale = if size > 0.0 {
             self.chart.outwards / size.sqrt()
@@ -320,7 +320,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             1.0
         };
         let normal = normal.map(|c| (c * scale) as f32);
-        let source = (self.lines.source)(course.time(share));
+        let source = (self.lines.source)(motion.time(share));
         let jump = self.chart.jump;
         self.lines.collector.crossing(line as usize, z, jump, normal, source);
     }

@@ -5,7 +5,7 @@
 
 mod at_rest;
 mod chart;
-mod course;
+mod directed_motion;
 mod face;
 mod knot;
 mod lines;
@@ -23,7 +23,7 @@ use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
 use crate::methods::harvest::unit;
 use crate::time::circles::LevelArc;
 use at_rest::{Finds, Search, Still, TooMany};
-use course::{Course, Directions, Key};
+use directed_motion::{DirectedMotion, Directions, Key};
 use face::{Curve, Face};
 use lines::{Lines, Target};
 use nalgebra::{Matrix3, Vector3};
@@ -105,9 +105,9 @@ impl Grazing {
         }
     }
 
-    /// The number of the family of a course, which is the last one then.
-    fn family(&mut self, course: &Course, elements: [usize; 2]) -> Option<&mut Family> {
-        let (key, directions) = course.family()?;
+    /// The number of the family of a motion, which is the last one then.
+    fn family(&mut self, motion: &DirectedMotion, elements: [usize; 2]) -> Option<&mut Family> {
+        let (key, directions) = motion.family()?;
         if let Some(known) = self.families.iter().position(|family| family.key == key) {
             let family = self.families.remove(known);
             self.families.push(family);
@@ -136,14 +136,14 @@ impl Grazing {
         if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
             return;
         }
-        let course = match grazed.level_arc {
-            Some(level_arc) => Course::around(level_arc, grazed.segment, grazed.slack),
-            None => Course::new(grazed.segment, grazed.slack),
+        let motion = match grazed.level_arc {
+            Some(level_arc) => DirectedMotion::around(level_arc, grazed.segment, grazed.slack),
+            None => DirectedMotion::new(grazed.segment, grazed.slack),
         };
-        let Some(course) = course else { return };
+        let Some(motion) = motion else { return };
         let mut targets = std::mem::take(&mut self.targets);
         let counts = tool.each_ref().map(|elements| elements.forms.len());
-        let Some(family) = self.family(&course, counts) else {
+        let Some(family) = self.family(&motion, counts) else {
             return;
         };
         let mut trimmed = Vec::new();
@@ -165,14 +165,14 @@ impl Grazing {
                 if number == ring.start {
                     mark = grazed.collector.mark();
                 }
-                let tree = trees[number].get_or_insert_with(|| Tree::new(element, cells, 0, directions, course.slack));
+                let tree = trees[number].get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.slack));
                 let of = (element, &mut *cells);
                 done[number] = if element.is_edge() {
-                    let curve = &Rim::new(element, &course.own);
-                    grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
+                    let curve = &Rim::new(element, &motion.own);
+                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
                 } else {
-                    let curve = &Face::new(element, &course.own);
-                    grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
+                    let curve = &Face::new(element, &motion.own);
+                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
                 };
                 if !done[number] {
                     grazed.collector.forget(mark);
@@ -199,18 +199,18 @@ impl Grazed<'_, '_> {
     fn element(
         &mut self,
         (element, cells): (&PatchForms, &mut Cells),
-        (curve, course): (&impl Curve, &Course),
+        (curve, motion): (&impl Curve, &DirectedMotion),
         (tree, directions): (&mut Tree, &Directions),
         source: &impl Fn(f64) -> Source,
         targets: &mut Vec<Target>,
     ) -> bool {
-        let lowest = course.from.min(course.from + course.rise);
+        let lowest = motion.from.min(motion.from + motion.rise);
         let spacing = self.collector.lines.spacing();
         let ceiling = self.ceiling.map(|ceiling| ceiling.above(lowest, spacing));
         let mut walk = Walk {
             element,
             cells,
-            course,
+            motion,
             highest: ceiling.unwrap_or(f64::INFINITY),
             monitor: self.monitor,
             looks: 0,
@@ -218,7 +218,7 @@ impl Grazed<'_, '_> {
             visits: 0,
             lines: Lines {
                 curve,
-                course,
+                motion,
                 collector: &mut *self.collector,
                 source,
                 height_tolerance: self.height_tolerance,

@@ -29,7 +29,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         latest: &mut Option<Witness>,
     ) -> Option<Knot> {
         let chart = self.chart;
-        let length = self.lines.course.length;
+        let length = self.lines.motion.length;
         let mut within = chart.region(&self.centre, [p, 0.0], &Region::WHOLE);
         // Where the curve has left the chart, the points that were looked at there tell.
         for witness in ends.into_iter().filter_map(|end| end.witness.as_ref()) {
@@ -43,7 +43,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
             [a, b] => a.or(b),
         };
-        let slack = self.lines.course.ground.error(p);
+        let slack = self.lines.motion.ground.error(p);
         if let (Some(knot), Some((q, _))) = (nearest, line) {
             let (lo, hi) = chart.q(&knot.witness, &within);
             // A knot is of use to other lines.
@@ -136,9 +136,9 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// Leaves a line open, unless no point of the region meets it on its way, as seen from a witness.
     fn leave(&mut self, (p, line): (f64, Option<(f64, u32)>), witness: &Witness, within: &Region) {
         let Some((q, line)) = line else { return };
-        let slack = self.lines.course.ground.error(p);
+        let slack = self.lines.motion.ground.error(p);
         let (lo, hi) = self.chart.q(witness, within);
-        if meets((lo - slack, hi + slack), q, self.lines.course.length) {
+        if meets((lo - slack, hi + slack), q, self.lines.motion.length) {
             self.lines.collector.open(line as usize);
         }
     }
@@ -163,9 +163,9 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
         let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
-        let error = self.chart.change(off) + self.lines.course.ground.error(p);
+        let error = self.chart.change(off) + self.lines.motion.ground.error(p);
         let ahead = q - place[0];
-        let length = self.lines.course.length;
+        let length = self.lines.motion.length;
         if ahead < -error || ahead > length + error {
             return Verdict::Settled;
         }

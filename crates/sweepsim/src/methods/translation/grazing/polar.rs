@@ -158,7 +158,7 @@ impl Wedge {
 
 #[cfg(test)]
 mod tests {
-    use super::super::course::Course;
+    use super::super::directed_motion::DirectedMotion;
     use super::super::face::{Curve, Face};
     use super::super::tree::{Tree, error, g, slopes_of_g};
     use crate::algebra::table::position;
@@ -193,25 +193,25 @@ mod tests {
             let level_arc = LevelArc { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle, tool_x: stands.map(|angle: f64| [angle.cos(), angle.sin()]) };
             let pose = |z: f64| Pose::new([0.0, 0.0, z], [0.0, 0.0, 1.0]).unwrap();
             let segment = Segment::between(&pose(0.0), &pose(slope * radius)).remove(0);
-            let course = Course::around(&level_arc, &segment, 1e-13).unwrap();
-            let Some((_, family)) = course.family() else { return Ok(()) };
+            let motion = DirectedMotion::around(&level_arc, &segment, 1e-13).unwrap();
+            let Some((_, family)) = motion.family() else { return Ok(()) };
             let forms = PatchForms::of_patches(tools()[tool].patches());
             let element = &forms[number % forms.len()];
             let sides = sides.map(f64::exp2);
             let lower = [0, 1].map(|k: usize| corner[k] * (1.0 - sides[k]));
             let upper = [0, 1].map(|k: usize| lower[k] + sides[k]);
             let at = [0, 1].map(|k: usize| lower[k] + shares[k] * sides[k]);
-            let face = Face::new(element, &course.own);
+            let face = Face::new(element, &motion.own);
             let sight = face.at(at);
             let mut cells = Cells::new(element);
             let cell = cells.place(element, lower, upper);
             cells.prepare(element, cell);
-            for directions in [&course.own, &family] {
+            for directions in [&motion.own, &family] {
                 let blur = Tree::new(element, &mut cells, 0, directions, 1e-13).blur;
                 let position = cells.position(element, cell);
                 let [q, p] = directions.ranges(&position, blur.place, 1e-13 * (1.0 + radius));
                 let wedge = directions.wedge(&position, blur.place);
-                let near = if q.0.is_finite() { course.ground.near(sight.place[0], 0.5 * (q.0 + q.1)) } else { sight.place[0] };
+                let near = if q.0.is_finite() { motion.ground.near(sight.place[0], 0.5 * (q.0 + q.1)) } else { sight.place[0] };
                 prop_assert!(q.0 <= near && near <= q.1 && q.1 - q.0 < 3.3 || q.0 == f64::NEG_INFINITY, "{q:?} {near}");
                 prop_assert!(p.0 <= sight.place[1] && sight.place[1] <= p.1, "{p:?} {:?}", sight.place);
                 for axis in 0..2 {
@@ -234,14 +234,14 @@ mod tests {
                 }
             }
             // The velocity is that of a turn about the centre; of a tool of revolution, but for a turn about its own axis.
-            let [ahead, left, up] = course.own.rows.map(Vector3::from);
+            let [ahead, left, up] = motion.own.rows.map(Vector3::from);
             let [point, ..] = position(&element.places.at::<4>(at));
             if stands.is_some() {
-                let expected = up.cross(&(point - left * radius)) + up * (course.rise / course.length);
-                let scale = radius.hypot(course.rise / course.length).recip();
-                prop_assert!((course.own.velocity(&point) - expected * scale).norm() < 1e-12 * (1.0 + point.norm() * scale));
+                let expected = up.cross(&(point - left * radius)) + up * (motion.rise / motion.length);
+                let scale = radius.hypot(motion.rise / motion.length).recip();
+                prop_assert!((motion.own.velocity(&point) - expected * scale).norm() < 1e-12 * (1.0 + point.norm() * scale));
             } else {
-                prop_assert!(course.own.velocity(&point).dot(&left).abs() < 1e-12 && course.own.velocity(&point).dot(&ahead) > 0.0);
+                prop_assert!(motion.own.velocity(&point).dot(&left).abs() < 1e-12 && motion.own.velocity(&point).dot(&ahead) > 0.0);
             }
             // The derivatives are those of the values.
             const STEP: f64 = 1e-6;
@@ -253,7 +253,7 @@ mod tests {
                     face.at(at).place
                 });
                 for k in 0..3 {
-                    let change = if k == 0 { course.ground.near(b[0], a[0]) - a[0] } else { b[k] - a[k] };
+                    let change = if k == 0 { motion.ground.near(b[0], a[0]) - a[0] } else { b[k] - a[k] };
                     let expected = sight.slopes[axis][k];
                     prop_assert!((change / (2.0 * STEP) - expected).abs() < 1e-3 * (1.0 + expected.abs()), "{axis} {k} {expected}");
                 }

@@ -4,7 +4,7 @@
 //! With a second unknown `w`, and `w = 0` in place of `g = 0`, it has the form of the equations of a patch, and is solved as these are. Both signs of `g` are the same on all of a chart.
 
 use super::chart::{Chart, Range, magnitude};
-use super::course::Directions;
+use super::directed_motion::Directions;
 use super::face::{Curve, Sight};
 use super::polar::Centre;
 use super::tree::{Blur, FLAT, SMALLEST, error, g};
@@ -175,7 +175,7 @@ fn outwards(element: &PatchForms, r: f64, directions: &Directions) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::course::Course;
+    use super::super::directed_motion::DirectedMotion;
     use super::super::tree::Tree;
     use super::*;
     use crate::time::circles::LevelArc;
@@ -225,16 +225,16 @@ mod tests {
         ) {
             let tool = [Tool::flat(3.0, 9.0), Tool::bull(3.0, 1.0, 9.0), Tool::ball(3.0, 9.0), Ok(block())][tool].clone().unwrap();
             let pose = |tip| Pose::new(tip, if radius.is_some() { [0.0, 0.0, 1.0] } else { axis }).unwrap();
-            let course = |way: [f64; 3]| {
+            let motion = |way: [f64; 3]| {
                 let segment = Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
-                let Some(radius) = radius else { return Course::new(&segment, 1e-13) };
+                let Some(radius) = radius else { return DirectedMotion::new(&segment, 1e-13) };
                 let [x, y, _] = way;
                 let level_arc = LevelArc { centre: [0.3, -0.2], radius: radius.exp() + 0.1 * way[2], from: [0.6, 0.8], angle: x, tool_x: Some([x / x.hypot(y), y / x.hypot(y)]) };
-                Course::around(&level_arc, &segment, 1e-13)
+                DirectedMotion::around(&level_arc, &segment, 1e-13)
             };
-            let (Some(course), Some(other)) = (course(way), course([0, 1, 2].map(|k: usize| way[k] + shift[k]))) else { return Ok(()) };
-            let Some((key, family)) = course.family() else { return Ok(()) };
-            let mut all = vec![&course];
+            let (Some(motion), Some(other)) = (motion(way), motion([0, 1, 2].map(|k: usize| way[k] + shift[k]))) else { return Ok(()) };
+            let Some((key, family)) = motion.family() else { return Ok(()) };
+            let mut all = vec![&motion];
             // A different family for a few of them.
             all.extend(other.family().is_some_and(|(own, _)| own == key).then_some(&other));
             for element in PatchForms::all(&tool).1 {
@@ -244,8 +244,8 @@ mod tests {
                 while let Some((cell, depth)) = stack.pop() {
                     let (lower, upper) = cells.bounds(cell, 0);
                     let look = look((&element, &mut cells, cell), (-1.0, 1.0), &family, &blur, 1e-13);
-                    for (share, course) in shares.iter().flat_map(|share| all.iter().map(move |course| (share, course))) {
-                        let (across, [a, b]) = at(&element, lower + share * (upper - lower), &course.own);
+                    for (share, motion) in shares.iter().flat_map(|share| all.iter().map(move |motion| (share, motion))) {
+                        let (across, [a, b]) = at(&element, lower + share * (upper - lower), &motion.own);
                         let is_edge = (a < 0.0) != (b < 0.0);
                         match &look {
                             Look::Empty => prop_assert!(!is_edge),

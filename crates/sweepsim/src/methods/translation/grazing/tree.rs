@@ -1,7 +1,7 @@
 //! The cells of a patch, or of an edge, along the grazing curves of a family of directions, divided as far as lines have asked for.
 
 use super::chart::{Chart, Range, Rough, magnitude};
-use super::course::Directions;
+use super::directed_motion::Directions;
 use super::rim::{Look, look};
 use crate::algebra::ranges::{ROUNDING, Triples, envelope, products};
 use crate::cutter::cells::Cells;

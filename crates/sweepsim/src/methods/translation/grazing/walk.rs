@@ -1,7 +1,7 @@
 //! A walk through the cells of a patch or an edge along one move: those with lines on their way are looked at, and divided where no move has asked for that before.
 
 use super::at_rest::TooMany;
-use super::course::{Course, Directions};
+use super::directed_motion::{DirectedMotion, Directions};
 use super::face::Curve;
 use super::lines::Lines;
 use super::tree::{Known, Tree};
@@ -26,7 +26,7 @@ enum Next {
 pub(super) struct Walk<'a, 'b, S, C> {
     pub element: &'a PatchForms,
     pub cells: &'a mut Cells,
-    pub course: &'a Course,
+    pub motion: &'a DirectedMotion,
     /// Cells that are all this high above the tip are above the ceiling.
     pub highest: f64,
     pub monitor: &'a dyn Monitor,
@@ -39,7 +39,7 @@ pub(super) struct Walk<'a, 'b, S, C> {
 
 impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
     pub fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
-        let slack = self.course.slack;
+        let slack = self.motion.slack;
         let mut stack = vec![Next::Visit(0)];
         while let Some(next) = stack.pop() {
             let number = match next {
@@ -52,7 +52,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
             let node = tree.node(number);
             let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
             self.visits += 1;
-            if node.lowest > self.highest || !self.course.ground.meets(self.lines.collector.lines, window) {
+            if node.lowest > self.highest || !self.motion.ground.meets(self.lines.collector.lines, window) {
                 continue;
             }
             if self.monitor.cancelled() {
@@ -79,7 +79,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
                     stack.push(Next::Visit(rest));
                 }
                 Known::Mixed => {
-                    let own = &self.course.own;
+                    let own = &self.motion.own;
                     let mut tree = Tree::new(self.element, self.cells, cell, own, slack);
                     self.tree(&mut tree, own)?;
                 }

@@ -1,7 +1,7 @@
 //! Where a cylinder may move so little across its axis that its `G` rises.
 
 use super::Cylinder;
-use crate::methods::turning::course::{Bounds, Moment};
+use crate::methods::turning::axis_motion::{Bounds, Moment};
 
 impl Cylinder {
     /// Heights at which `G` may rise. With `S` as above and `c = ⟨b′, a × a′⟩/|a′|`,

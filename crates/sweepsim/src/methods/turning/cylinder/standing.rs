@@ -106,7 +106,7 @@ pub(in crate::methods::turning) fn standing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::turning::course::Course;
+    use crate::methods::turning::axis_motion::AxisMotion;
     use proptest::prelude::*;
     use sweepsim_motion::{Pose, Segment};
 
@@ -119,13 +119,13 @@ mod tests {
             let axis = |n: usize| [lean * axes[n][0], lean * axes[n][1], if down { -1.0 } else { 1.0 }];
             let tip = |n: usize| [0, 1, 2].map(|k| tips[0][k] + share * n as f64 * (tips[1][k] - tips[0][k]));
             let [from, to] = [0, 1].map(|n| Pose::new(tip(n), axis(n)).unwrap());
-            let Some(course) = Course::new(&Segment::between(&from, &to)[0]) else { return Ok(()) };
-            let [from, to] = [0.0, 1.0].map(|t| course.at(t));
-            let span = Span { bounds: course.bounds([&from, &to]), from, to, last: true };
+            let Some(motion) = AxisMotion::new(&Segment::between(&from, &to)[0]) else { return Ok(()) };
+            let [from, to] = [0.0, 1.0].map(|t| motion.at(t));
+            let span = Span { bounds: motion.bounds([&from, &to]), from, to, last: true };
             let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
             let Some(ring) = Ring::new(&cylinder, &span, 1e-14) else { return Ok(()) };
             for [t, share] in points {
-                let (moment, zeta) = (course.at(t), 1.0 + 8.0 * share);
+                let (moment, zeta) = (motion.at(t), 1.0 + 8.0 * share);
                 let across = moment.axis.cross(&(moment.velocity + moment.rate * zeta));
                 prop_assume!(across.norm() > 1e-6);
                 for side in [-1.0, 1.0] {
@@ -139,9 +139,9 @@ mod tests {
         #[test]
         fn few_lines_are_kept(angle in 0.0..6.3_f64, along in 0.0..6.3_f64) {
             let pose = |n: f64| Pose::new([0.02 * n * along.cos(), 0.02 * n * along.sin(), 0.0], [1e-3 * n * angle.cos(), 1e-3 * n * angle.sin(), 1.0]).unwrap();
-            let Some(course) = Course::new(&Segment::between(&pose(-1.0), &pose(1.0))[0]) else { return Ok(()) };
-            let [from, to] = [0.0, 1.0].map(|t| course.at(t));
-            let span = Span { bounds: course.bounds([&from, &to]), from, to, last: true };
+            let Some(motion) = AxisMotion::new(&Segment::between(&pose(-1.0), &pose(1.0))[0]) else { return Ok(()) };
+            let [from, to] = [0.0, 1.0].map(|t| motion.at(t));
+            let span = Span { bounds: motion.bounds([&from, &to]), from, to, last: true };
             let ring = Ring::new(&Cylinder { radius: 1.5, ends: [1.0, 9.0] }, &span, 1e-14).expect("a tool that hardly leans");
             let kept = (0..100 * 100).filter(|n| {
                 let [x, y] = [n / 100, n % 100].map(|k| -2.0 + 0.04 * f64::from(k));

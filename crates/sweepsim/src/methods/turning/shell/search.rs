@@ -2,8 +2,8 @@
 
 use super::{Falls, Meeting, Passage, Shell, Undecided};
 use crate::methods::harvest::unit;
+use crate::methods::turning::axis_motion::AxisMotion;
 use crate::methods::turning::blocks::blocks;
-use crate::methods::turning::course::Course;
 use crate::methods::turning::intervals::{Range, Sign};
 use crate::methods::turning::spans::{Span, Verdict};
 use crate::methods::turning::zero::{Known, Sample, Turn, start, zero};
@@ -27,10 +27,10 @@ pub(super) struct View<'p, P> {
     pub meeting: Meeting,
 }
 
-/// A search of a shell along one span of a course.
+/// A search of a shell along one span of a motion.
 pub(in crate::methods::turning) struct ShellSearch<'a, S: Shell, F> {
     shell: &'a S,
-    course: &'a Course,
+    motion: &'a AxisMotion,
     limits: &'a S::Limits,
     source: F,
     /// Lines that are left to charts.
@@ -50,10 +50,15 @@ struct Line {
 }
 
 impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
-    pub fn new((shell, limits): (&'a S, &'a S::Limits), course: &'a Course, source: F, left: &'a mut Leftover) -> Self {
+    pub fn new(
+        (shell, limits): (&'a S, &'a S::Limits),
+        motion: &'a AxisMotion,
+        source: F,
+        left: &'a mut Leftover,
+    ) -> Self {
         Self {
             shell,
-            course,
+            motion,
             limits,
             source,
             left,
@@ -160,7 +165,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 _ => 0.5,
             };
             let t = from.t + share * length;
-            let posed = self.shell.pose(self.course, t);
+            let posed = self.shell.pose(self.motion, t);
             let middle = View {
                 t,
                 at: &posed,
@@ -204,7 +209,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         ([from, to], there): ([&View<S::Posed>; 2], [bool; 2]),
         (sheet, falling): (usize, bool),
     ) -> Result<(), Undecided> {
-        let (shell, course, limits) = (self.shell, self.course, self.limits);
+        let (shell, motion, limits) = (self.shell, self.motion, self.limits);
         let (ends, slack, height_tolerance) = (shell.ends(), searching.slack, searching.height_tolerance);
         let last = self.last[sheet].as_ref();
         let bracket = [from.t, to.t];
@@ -231,7 +236,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             bracket,
             (there, first),
             |t| {
-                let posed = shell.pose(course, t);
+                let posed = shell.pose(motion, t);
                 let meeting = shell.meet(&posed, line.at);
                 (meeting.half_chord_sq > 0.0).then(|| {
                     let [slope, rise] = shell.slope(&posed, &meeting, sheet);

@@ -11,12 +11,12 @@ use sweepsim_motion::{Pose, Segment};
 fn agrees<S: Shell>(
     shell: &S,
     limits: &S::Limits,
-    course: &Course,
+    motion: &AxisMotion,
     [a, b]: [f64; 2],
     line: [f64; 2],
 ) -> TestCaseResult {
     let view = |t: f64| {
-        let posed = shell.at(&course.at(t));
+        let posed = shell.at(&motion.at(t));
         (t, posed, shell.meet(&posed, line))
     };
     let ([from, to], length) = ([view(a), view(b)], b - a);
@@ -103,18 +103,18 @@ proptest! {
         let axis = |n: usize| [0, 1, 2].map(|k| axes[0][k] + near * n as f64 * (axes[1][k] - axes[0][k]));
         let [from, to] = [0, 1].map(|n| Pose::new(tips[n], axis(n)).unwrap());
         let segment = &Segment::between(&from, &to)[0];
-        let Some(course) = Course::new(segment) else { return Ok(()) };
+        let Some(motion) = AxisMotion::new(segment) else { return Ok(()) };
         let span = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        let moments = span.map(|t| course.at(t));
-        let bounds = course.bounds([&moments[0], &moments[1]]);
+        let moments = span.map(|t| motion.at(t));
+        let bounds = motion.bounds([&moments[0], &moments[1]]);
         let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
         let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
         for line in lines {
             if let Some(limits) = ball.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&ball, &limits, &course, span, line)?;
+                agrees(&ball, &limits, &motion, span, line)?;
             }
             if let Some(limits) = cylinder.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&cylinder, &limits, &course, span, line)?;
+                agrees(&cylinder, &limits, &motion, span, line)?;
             }
         }
     }

@@ -26,7 +26,7 @@ const START: [f64; 2] = [0.761_245_135, 0.648_464_164];
 
 /// A move without rotation, or an arc with which the tool turns, in the direction in which its family goes: arcs turn left.
 #[derive(Clone, Debug)]
-pub(super) struct Course {
+pub(super) struct DirectedMotion {
     /// The height of the tip, and its rise.
     pub from: f64,
     pub rise: f64,
@@ -168,7 +168,7 @@ fn unit<const N: usize>(v: [f64; N]) -> [f64; N] {
     v.map(|x| x / length)
 }
 
-impl Course {
+impl DirectedMotion {
     /// `None` for moves that turn, or have too little travel across the dexels. `slack`: the rounding error of coordinates.
     pub fn new(segment: &Segment, slack: f64) -> Option<Self> {
         if !segment.is_arc() || segment.turns().len() != 1 {
@@ -265,7 +265,7 @@ impl Course {
         })
     }
 
-    /// The family of a course: a function of its own direction alone, so that results do not depend on which courses were taken before.
+    /// The family of a motion: a function of its own direction alone, so that results do not depend on which motions were taken before.
     pub fn family(&self) -> Option<(Key, Directions)> {
         let rounded = |x: f64| (x * FINENESS).round();
         let (ahead, way) = (self.ahead.map(rounded), unit(self.way).map(rounded));

@@ -5,7 +5,7 @@ use sweepsim_motion::{Segment, turned_back};
 
 /// A straight tip, and an axis that turns about one direction: `a = Â/w`, quadratic over quadratic, with `a′ = κ k × a/w`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
+pub(super) struct AxisMotion {
     /// Bernstein coefficients of `w a`, and of `w`.
     axis: [Vector3<f64>; 3],
     weights: [f64; 3],
@@ -48,7 +48,7 @@ pub(super) struct Bounds {
     pub length: f64,
 }
 
-impl Course {
+impl AxisMotion {
     /// `None` for motions of other kinds.
     pub fn new(segment: &Segment) -> Option<Self> {
         let ([a, b, c], [u, v, w]) = (segment.turns(), segment.weights()) else {
@@ -193,14 +193,14 @@ mod tests {
         #[test]
         fn bounds_hold(from in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], to in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], ends in [0.0..1.0_f64, 0.0..1.0]) {
             let poses = [Pose::new([1.0, -2.0, 0.5], from).unwrap(), Pose::new([4.0, 1.0, 0.0], to).unwrap()];
-            let Some(course) = Course::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
+            let Some(motion) = AxisMotion::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
             let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            let bounds = course.bounds([&course.at(a), &course.at(b)]);
+            let bounds = motion.bounds([&motion.at(a), &motion.at(b)]);
             let within = |value: f64, [low, high]: [f64; 2]| value >= low - 1e-12 && value <= high + 1e-12;
             for n in 0..=50 {
                 let t = a + (b - a) * f64::from(n) / 50.0;
-                let (moment, h) = (course.at(t), 1e-5);
-                let [low, high] = [course.at(t - h), course.at(t + h)];
+                let (moment, h) = (motion.at(t), 1e-5);
+                let [low, high] = [motion.at(t - h), motion.at(t + h)];
                 prop_assert!((moment.rate - (high.axis - low.axis) / (2.0 * h)).norm() < 1e-8);
                 prop_assert!((moment.bend - (high.rate - low.rate) / (2.0 * h)).norm() < 1e-8);
                 prop_assert!(moment.rate.norm() <= bounds.rate * (1.0 + 1e-12) && moment.bend.norm() <= bounds.bend * (1.0 + 1e-12));
