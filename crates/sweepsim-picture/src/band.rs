@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::frame::{BAND, ImagePoint, RIM, SAMPLES, STEP, area};
 use crate::light::{Around, Lights};
 use crate::scene::Scene;
-use crate::shade::{self, Matter, Spot};
+use crate::shade::{self, Matter, PixelPatch};
 
 /// Marks a sample that sees no triangle.
 const EMPTY: u32 = u32::MAX;
@@ -321,7 +321,7 @@ impl Band {
             // Depth is linear across the image of a plane, so that the mean is on it.
             let [x, y] = self.place(piece.at.map(|c| c * mean));
             let [from, ray] = camera.sight(x, y);
-            let spot = Spot {
+            let patch = PixelPatch {
                 at: along(from, camera.distance(piece.near * mean), ray),
                 normal: piece.normal,
                 around: Around {
@@ -331,7 +331,7 @@ impl Band {
                 value: piece.value * mean,
                 matter: piece.matter,
             };
-            let lit = shade::shade(camera, lights, &spot);
+            let lit = shade::shade(camera, lights, &patch);
             let lined = mix(lit, scale(lit, 0.45), piece.line * mean);
             colour = along(colour, piece.count * part, lined);
         }

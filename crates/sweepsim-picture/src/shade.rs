@@ -7,7 +7,7 @@ use crate::light::{Around, Lights, NET_REACH};
 
 /// A patch of surface within a pixel.
 #[derive(Clone, Copy)]
-pub(crate) struct Spot {
+pub(crate) struct PixelPatch {
     pub at: Vector,
     pub normal: Vector,
     pub around: Around,
@@ -51,26 +51,26 @@ fn surroundings(d: Vector) -> Vector {
     mix([0.24, 0.23, 0.225], sky, smooth_step(-0.25, 0.22, d[2]))
 }
 
-/// The light from a spot to the eye: linear, tone-mapped to 0…1.
-pub(crate) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
-    let n = unit(spot.normal);
-    let view = camera.towards(spot.at);
-    let (base, shine) = match spot.matter {
-        Matter::Metal => (mix(STOCK, CUT, spot.value), 0.32 + 0.30 * spot.value),
-        Matter::Value if spot.value.is_nan() => (UNKNOWN, 0.1),
-        Matter::Value => (legend::colour(spot.value), 0.08),
+/// The light from a patch to the eye: linear, tone-mapped to 0…1.
+pub(crate) fn shade(camera: &Camera, lights: &Lights, patch: &PixelPatch) -> Vector {
+    let n = unit(patch.normal);
+    let view = camera.towards(patch.at);
+    let (base, shine) = match patch.matter {
+        Matter::Metal => (mix(STOCK, CUT, patch.value), 0.32 + 0.30 * patch.value),
+        Matter::Value if patch.value.is_nan() => (UNKNOWN, 0.1),
+        Matter::Value => (legend::colour(patch.value), 0.08),
         Matter::Tool => (TOOL, 0.45),
-        Matter::Section => (scale(CLAY, stripes(spot.at, n)), 0.0),
+        Matter::Section => (scale(CLAY, stripes(patch.at, n)), 0.0),
     };
     let cosine = dot(n, lights.lamp);
-    let lamp = if cosine > 0.0 { lights.lamp_at(spot.at, n) } else { 0.0 };
-    let open = (spot.around.sky + spot.around.ground).min(1.0);
+    let lamp = if cosine > 0.0 { lights.lamp_at(patch.at, n) } else { 0.0 };
+    let open = (patch.around.sky + patch.around.ground).min(1.0);
     let diffuse = add(
         scale(LAMP, lamp * cosine.max(0.0) * 0.60),
         add(
-            scale(SKY, 0.62 * spot.around.sky.powf(1.3)),
+            scale(SKY, 0.62 * patch.around.sky.powf(1.3)),
             add(
-                scale(GROUND, 0.5 * spot.around.ground),
+                scale(GROUND, 0.5 * patch.around.ground),
                 // Light reflected by other faces of the part.
                 scale(base, 0.08 + 0.45 * (1.0 - open)),
             ),

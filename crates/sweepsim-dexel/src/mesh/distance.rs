@@ -6,7 +6,7 @@
 //! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
 //! Pseudonormal*, 2005).
 
-use super::parts::{self, Part};
+use super::parts::{self, TrianglePart};
 use super::{MeshError, TriangleSoup};
 use crate::vector::{cross, dot, sub};
 use std::collections::HashMap;
@@ -159,7 +159,7 @@ impl TreeNode {
 }
 
 /// Builds the tree over some parts of faces, the first of which has the place `first` in the order of all.
-fn split(nodes: &mut Vec<TreeNode>, parts: &mut [Part], first: usize) {
+fn split(nodes: &mut Vec<TreeNode>, parts: &mut [TrianglePart], first: usize) {
     let number = nodes.len();
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for part in &*parts {

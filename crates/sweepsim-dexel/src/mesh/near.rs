@@ -23,7 +23,7 @@ pub(super) fn within(surface: &TriangleSoup, other: &DistanceTo, most: f64) -> b
 /// middle. Others are cut along the edges of the triangle nearest to their middle, or in halves while they are much
 /// larger than that.
 fn is_near(triangle: [[f64; 3]; 3], other: &DistanceTo, most: f64) -> bool {
-    let mut open = vec![Part::from_slice(&triangle)];
+    let mut open = vec![ConvexPolygon::from_slice(&triangle)];
     let mut parts = 0;
     while let Some(part) = open.pop() {
         parts += 1;
@@ -37,7 +37,7 @@ fn is_near(triangle: [[f64; 3]; 3], other: &DistanceTo, most: f64) -> bool {
         if !(near.distance <= most) || parts > PARTS {
             return false;
         }
-        let all_near = |part: &Part| part.iter().all(|p| near.distance_of(*p) <= most);
+        let all_near = |part: &ConvexPolygon| part.iter().all(|p| near.distance_of(*p) <= most);
         if near.distance + radius <= most || all_near(&part) {
             continue;
         }
@@ -64,7 +64,7 @@ fn is_near(triangle: [[f64; 3]; 3], other: &DistanceTo, most: f64) -> bool {
 }
 
 /// A convex polygon.
-type Part = SmallVec<[[f64; 3]; 8]>;
+type ConvexPolygon = SmallVec<[[f64; 3]; 8]>;
 
 /// How far its corners are from a point.
 fn reach(corners: &[[f64; 3]], from: [f64; 3]) -> f64 {
@@ -73,7 +73,7 @@ fn reach(corners: &[[f64; 3]], from: [f64; 3]) -> f64 {
 
 /// The pieces of a polygon on the side of a plane that its normal points to, and on the other. What is on the plane but
 /// for rounding is on it, and a polygon that is altogether is on the first side.
-fn cut(part: &Part, place: [f64; 3], normal: [f64; 3]) -> (Option<Part>, Option<Part>) {
+fn cut(part: &ConvexPolygon, place: [f64; 3], normal: [f64; 3]) -> (Option<ConvexPolygon>, Option<ConvexPolygon>) {
     let size = part
         .iter()
         .chain([&place])
@@ -90,7 +90,7 @@ fn cut(part: &Part, place: [f64; 3], normal: [f64; 3]) -> (Option<Part>, Option<
     if sides.iter().all(|side| *side <= 0.0) {
         return (None, Some(part.clone()));
     }
-    let (mut inside, mut outside) = (Part::new(), Part::new());
+    let (mut inside, mut outside) = (ConvexPolygon::new(), ConvexPolygon::new());
     for (k, p) in part.iter().enumerate() {
         let next = (k + 1) % part.len();
         let (here, there) = (sides[k], sides[next]);
@@ -111,7 +111,7 @@ fn cut(part: &Part, place: [f64; 3], normal: [f64; 3]) -> (Option<Part>, Option<
 }
 
 /// The halves of a polygon, across its longest diagonal or side; `None` if it is a point.
-fn halves(part: &Part) -> Option<(Part, Part)> {
+fn halves(part: &ConvexPolygon) -> Option<(ConvexPolygon, ConvexPolygon)> {
     let pairs = (0..part.len()).flat_map(|a| (a + 1..part.len()).map(move |b| (a, b)));
     let apart = |&(a, b): &(usize, usize)| length(sub(part[b], part[a]));
     let (a, b) = pairs.max_by(|one, other| apart(one).total_cmp(&apart(other)))?;

@@ -6,7 +6,7 @@
 
 /// The box of a triangle, or of a part of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct TrianglePart {
     /// The number of the triangle.
     pub face: u32,
     pub low: [f64; 3],
@@ -51,7 +51,7 @@ fn width(triangle: &Triangle) -> f64 {
 /// The parts of all triangles: of most, one.
 ///
 /// The sum of the boxes' surfaces is least if there are as many parts of a triangle as the root of its own is large.
-pub(super) fn of(triangles: impl Iterator<Item = Triangle> + Clone) -> Vec<Part> {
+pub(super) fn of(triangles: impl Iterator<Item = Triangle> + Clone) -> Vec<TrianglePart> {
     let (mut sum, mut cut, mut count) = (0.0, 0.0_f64, 0);
     for width in triangles.clone().map(|triangle| width(&triangle)) {
         sum += width;
@@ -71,7 +71,7 @@ pub(super) fn of(triangles: impl Iterator<Item = Triangle> + Clone) -> Vec<Part>
         if share <= 1 {
             let place = [0, 1, 2].map(|k| triangle.iter().map(|p| p[k]).sum());
             let face = face as u32;
-            parts.push(Part { face, low, high, place });
+            parts.push(TrianglePart { face, low, high, place });
             continue;
         }
         let axis = (0..3).fold(0, |a, k| if high[k] - low[k] > high[a] - low[a] { k } else { a });
@@ -82,7 +82,7 @@ pub(super) fn of(triangles: impl Iterator<Item = Triangle> + Clone) -> Vec<Part>
 }
 
 /// The part of a triangle between two heights along an axis.
-fn slab(face: u32, triangle: &Triangle, axis: usize, [from, to]: [f64; 2]) -> Part {
+fn slab(face: u32, triangle: &Triangle, axis: usize, [from, to]: [f64; 2]) -> TrianglePart {
     let sides = (0..3).map(|k| [triangle[k], triangle[(k + 1) % 3]]);
     let crossings = sides.flat_map(|[a, b]| {
         [from, to].into_iter().filter_map(move |height| {
@@ -101,5 +101,5 @@ fn slab(face: u32, triangle: &Triangle, axis: usize, [from, to]: [f64; 2]) -> Pa
         (low[k], high[k]) = (low[k] - rounding, high[k] + rounding);
     }
     let place = [0, 1, 2].map(|k| 1.5 * (low[k] + high[k]));
-    Part { face, low, high, place }
+    TrianglePart { face, low, high, place }
 }

@@ -8,7 +8,7 @@ use crate::intervals::End;
 use smallvec::SmallVec;
 
 /// An edge of a square, from corner `k` to the next.
-pub(super) struct Side {
+pub(super) struct SquareSide {
     /// The joins of the ends of corner `k`, and of the next.
     pub(super) links: [SmallVec<[Link; 4]>; 2],
     /// Where an outline crosses it.
@@ -24,7 +24,7 @@ pub(super) struct Side {
 /// A square with the outline through it.
 pub(super) struct Square<'a> {
     pub(super) corners: [Dexel<'a>; 4],
-    pub(super) sides: [Side; 4],
+    pub(super) sides: [SquareSide; 4],
     pub(super) centre: [f64; 2],
     /// The first end's number in the square of each corner, and their count.
     pub(super) offsets: [usize; 5],
@@ -330,7 +330,7 @@ impl<'a> Square<'a> {
     }
 }
 
-fn side(field: &Field<'_>, outline: &Outline, s: [usize; 2], k: usize) -> Side {
+fn side(field: &Field<'_>, outline: &Outline, s: [usize; 2], k: usize) -> SquareSide {
     let (home, axis) = Field::edge_home(s, k);
     let [a, b] = field.edge_dexels(home, axis);
     let distance = field.spacing[axis];
@@ -351,7 +351,7 @@ fn side(field: &Field<'_>, outline: &Outline, s: [usize; 2], k: usize) -> Side {
         normal = normal.map(|c| -c);
         edge.wedges.swap(0, 1);
     }
-    Side {
+    SquareSide {
         links: edge.links,
         at,
         heights,

@@ -17,7 +17,7 @@ use sweepsim_dexel::{Dexels, Mesh, TriDexels};
 use sweepsim_formats::{Job, Report};
 
 /// The stock while it is cut.
-struct Course<'a> {
+struct CutStock<'a> {
     job: &'a Job,
     monitor: CancelOnly<'a>,
     sweeping: Options,
@@ -42,7 +42,7 @@ pub(crate) fn write(
 fn draw(session: Session, count: usize, stock: Vec<Dexels>, sink: &mut dyn Sink) -> Result<(), JobError> {
     let (job, request) = (session.job, session.request);
     let moments = moments(job, count);
-    let mut course = Course {
+    let mut cut = CutStock {
         job,
         monitor: CancelOnly(session.monitor),
         sweeping: request.sweep_options(job),
@@ -51,7 +51,7 @@ fn draw(session: Session, count: usize, stock: Vec<Dexels>, sink: &mut dyn Sink)
         done: 0,
     };
     // All frames have the point of view of the raw stock.
-    let raw = surface(course.sets.clone())?;
+    let raw = surface(cut.sets.clone())?;
     let Some(whole) = bounds(&raw) else {
         return Err(JobError::request("frames", "expected a stock that is not empty"));
     };
@@ -59,8 +59,8 @@ fn draw(session: Session, count: usize, stock: Vec<Dexels>, sink: &mut dyn Sink)
     for number in 0..count {
         let moment = moments.get(number).copied();
         let sets = match moment {
-            Some(moment) => course.at(moment)?,
-            None => course.sets.clone(),
+            Some(moment) => cut.at(moment)?,
+            None => cut.sets.clone(),
         };
         let mesh = surface(sets)?;
         let tool = moment.filter(|_| !request.no_tool).map(|moment| {
@@ -82,7 +82,7 @@ fn name(number: usize) -> String {
     format!("frame-{number:04}.png")
 }
 
-impl Course<'_> {
+impl CutStock<'_> {
     /// What is left of the stock at a moment. Moments must come in their order.
     fn at(&mut self, moment: Moment) -> Result<Vec<Dexels>, JobError> {
         while self.path < moment.path {

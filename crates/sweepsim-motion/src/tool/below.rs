@@ -12,12 +12,12 @@ const ROUNDING: f64 = 1e-12;
 
 /// A side of a patch: the variable that is constant there, and whether it is 1.
 #[derive(Clone, Copy, PartialEq)]
-struct Side {
+struct CutSide {
     axis: usize,
     upper: bool,
 }
 
-impl Side {
+impl CutSide {
     const ALL: [Self; 4] = [
         Self::new(0, false),
         Self::new(0, true),
@@ -57,13 +57,13 @@ impl Tool {
         let (above, others): (Vec<_>, Vec<_>) = self.patches.iter().partition(|patch| is_above(patch, height, None));
         let cuts: Vec<_> = others.iter().map(|patch| cut(patch, height)).collect();
         // The same parameter for all patches of a ring, so that they still join.
-        let common = |side: Side| {
+        let common = |side: CutSide| {
             let parts = cuts.iter().flatten().filter(|(own, _)| *own == side);
             parts.map(|(_, part)| *part).max()
         };
         let left_out: Vec<_> = above
             .iter()
-            .flat_map(|patch| Side::ALL.map(|side| places(patch, side)))
+            .flat_map(|patch| CutSide::ALL.map(|side| places(patch, side)))
             .collect();
         let (mut patches, mut rim) = (Vec::new(), Vec::new());
         for (patch, cut) in others.iter().zip(&cuts) {
@@ -71,7 +71,7 @@ impl Tool {
                 Some((side, _)) => kept(patch, *side, common(*side)?)?,
                 None => (*patch).clone(),
             };
-            for side in Side::ALL {
+            for side in CutSide::ALL {
                 let points = control(&kept, side);
                 if points.iter().any(|(p, _)| p.z < height) {
                     continue;
@@ -111,7 +111,7 @@ impl Tool {
 }
 
 /// Whether all of a patch is above a height, or its part between a parameter and a side.
-fn is_above(patch: &Patch, height: f64, beyond: Option<(Side, f64)>) -> bool {
+fn is_above(patch: &Patch, height: f64, beyond: Option<(CutSide, f64)>) -> bool {
     let (z, weight) = (&patch.position()[2], patch.weight());
     let above = |z: &Bernstein, weight: &Bernstein| {
         let mut pairs = z.coefficients().iter().zip(weight.coefficients());
@@ -125,21 +125,24 @@ fn is_above(patch: &Patch, height: f64, beyond: Option<(Side, f64)>) -> bool {
 }
 
 /// The side from which most of a patch can be cut off, all of it above a height, and how many parts remain.
-fn cut(patch: &Patch, height: f64) -> Option<(Side, usize)> {
-    let remain = |side: Side| {
+fn cut(patch: &Patch, height: f64) -> Option<(CutSide, usize)> {
+    let remain = |side: CutSide| {
         let is_enough = |part: &usize| is_above(patch, height, Some((side, place(side, *part))));
         (1..PARTS).find(is_enough).map(|part| (side, part))
     };
-    Side::ALL.into_iter().filter_map(remain).min_by_key(|(_, part)| *part)
+    CutSide::ALL
+        .into_iter()
+        .filter_map(remain)
+        .min_by_key(|(_, part)| *part)
 }
 
 /// The parameter at which a patch is cut so that some parts of it remain.
-fn place(side: Side, part: usize) -> f64 {
+fn place(side: CutSide, part: usize) -> f64 {
     let share = part as f64 / PARTS as f64;
     if side.upper { share } else { 1.0 - share }
 }
 
-fn kept(patch: &Patch, side: Side, part: usize) -> Option<Patch> {
+fn kept(patch: &Patch, side: CutSide, part: usize) -> Option<Patch> {
     let at = place(side, part);
     let [lo, hi] = if side.upper { [0.0, at] } else { [at, 1.0] };
     let form = |form: &Bernstein| form.restrict(side.axis, lo, hi).assumed_exact();
@@ -155,7 +158,7 @@ fn kept(patch: &Patch, side: Side, part: usize) -> Option<Patch> {
 }
 
 /// The control points of a side, and their weights.
-fn control(patch: &Patch, side: Side) -> Vec<(Vector3<f64>, f64)> {
+fn control(patch: &Patch, side: CutSide) -> Vec<(Vector3<f64>, f64)> {
     let degrees = patch.weight().degrees();
     let along = 1 - side.axis;
     let end = if side.upper { degrees[side.axis] } else { 0 };
@@ -175,7 +178,7 @@ fn control(patch: &Patch, side: Side) -> Vec<(Vector3<f64>, f64)> {
 }
 
 /// The ends and the middle of a side.
-fn places(patch: &Patch, side: Side) -> [Vector3<f64>; 3] {
+fn places(patch: &Patch, side: CutSide) -> [Vector3<f64>; 3] {
     let end = if side.upper { 1.0 } else { 0.0 };
     [0.0, 0.5, 1.0].map(|r| {
         let [u, v] = if side.axis == 0 { [end, r] } else { [r, end] };
@@ -185,7 +188,7 @@ fn places(patch: &Patch, side: Side) -> [Vector3<f64>; 3] {
 
 /// The lines from a side to a point, as a patch that faces as one does that goes on beyond the side; `None` unless it
 /// faces up everywhere.
-fn lid(points: &[(Vector3<f64>, f64)], side: Side, apex: &Vector3<f64>) -> Option<Patch> {
+fn lid(points: &[(Vector3<f64>, f64)], side: CutSide, apex: &Vector3<f64>) -> Option<Patch> {
     // Seen from above, the control polygon turns about the apex in one direction, and so does the side.
     let sense = if (side.axis == 1) == side.upper { 1.0 } else { -1.0 };
     let turns = points.windows(2).all(|pair| {

@@ -10,7 +10,7 @@ use crate::algebra::ranges::ROUNDING;
 use crate::algebra::table::{Table, position};
 use crate::cutter::direct::{Direct, Site};
 use crate::cutter::reduced::{Missing, Reduced, nodes, through};
-use crate::cutter::revolution::{Revolution, Spot};
+use crate::cutter::revolution::{PatchPoint, Revolution};
 use crate::cutter::tangents::Tangents;
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
@@ -216,7 +216,7 @@ impl PatchForms {
 
     /// A point of a placed patch, and its fields.
     #[inline]
-    pub fn spot(&self, placing: &Placing, at: [f64; 2]) -> (Spot, Fields) {
+    pub fn point(&self, placing: &Placing, at: [f64; 2]) -> (PatchPoint, Fields) {
         let (place, slopes, normal, fields) =
             if let Some(direct) = self.direct.as_ref().filter(|direct| direct.covers(at)) {
                 let site = direct.at(at);
@@ -228,22 +228,22 @@ impl PatchForms {
                 (place, [in_u, in_v], [x, y, z, 0.0], Fields::Lists(fields))
             };
         let turned = |direction: &Quad| placing.turned(&vector(direction));
-        let spot = Spot {
+        let point = PatchPoint {
             place: add(&turned(&place), &placing.origin),
             slopes: slopes.each_ref().map(turned),
             normal: turned(&normal),
         };
-        (spot, fields)
+        (point, fields)
     }
 
-    /// The place of a point of a placed patch alone; `None` if [`spot`](Self::spot) costs hardly more.
+    /// The place of a point of a placed patch alone; `None` if [`point`](Self::point) costs hardly more.
     #[inline]
     pub fn place(&self, placing: &Placing, at: [f64; 2]) -> Option<Quad> {
         let place = self.direct.as_ref()?.place(at)?;
         Some(add(&placing.turned(&vector(&place)), &placing.origin))
     }
 
-    /// The place of a point of a placed patch, and `⟨spin, M⟩ + ⟨travel, N⟩` there, without derivatives; `None` if [`spot`](Self::spot) costs hardly more.
+    /// The place of a point of a placed patch, and `⟨spin, M⟩ + ⟨travel, N⟩` there, without derivatives; `None` if [`point`](Self::point) costs hardly more.
     #[inline]
     pub fn value(&self, placing: &Placing, twist: &Twisted, at: [f64; 2]) -> Option<(Quad, f64)> {
         let direct = self.direct.as_ref().filter(|direct| direct.covers(at))?;

@@ -34,7 +34,7 @@ impl Revolution {
 }
 
 /// A point of a patch in space: position, both derivatives, normal.
-pub(crate) struct Spot {
+pub(crate) struct PatchPoint {
     pub place: Quad,
     pub slopes: [Quad; 2],
     pub normal: Quad,
@@ -49,7 +49,7 @@ pub(crate) struct Turned<'a> {
 
 impl Turned<'_> {
     /// `T F + o = (ρ (c T₁ + s T₂) + ζ w T₃)/(w ω) + o`.
-    pub fn spot(&self) -> Spot {
+    pub fn point(&self) -> PatchPoint {
         let [a, b, third] = &self.placing.turn;
         let [[c, s, w, _], [dc, ds, dw, _]] = self.circle;
         let [[rho, zeta, omega, n_rho, n_zeta, _], [d_rho, d_zeta, d_omega, ..]] = self.meridian;
@@ -60,7 +60,7 @@ impl Turned<'_> {
         let along_u = mix(p, &out_u, q * dw, third);
         let along_v = mix(d_rho * inverse, &out, d_zeta * inverse * w, third);
         let (by_u, by_v) = (dw * omega * inverse, w * d_omega * inverse);
-        Spot {
+        PatchPoint {
             place: add(&arm, &self.placing.origin),
             slopes: [mix(1.0, &along_u, -by_u, &arm), mix(1.0, &along_v, -by_v, &arm)],
             normal: mix(n_rho, &out, n_zeta * w, third),
@@ -119,7 +119,7 @@ mod tests {
                 let tool = tool.unwrap();
                 for (element, patch) in PatchForms::all(&tool).0.iter().zip(tool.patches()) {
                     let own = Placing::new(&turn, &tip, None);
-                    let (spot, fields) = element.spot(&own, at);
+                    let (point, fields) = element.point(&own, at);
                     let g = fields.envelopes(&Twisted::new(&spin, &travel, None));
                     // A few dozen roundings of numbers of the size of the place, of the tool, and of normals of size 1 with their slopes.
                     let size = 100.0 + 10.0 * radius;
@@ -127,12 +127,12 @@ mod tests {
                         let frame = element.frame();
                         let placing = Placing::new(&turn, &tip, frame);
                         let turned = revolution.at(&placing, at);
-                        let short = turned.spot();
-                        prop_assert!(near(&short.place, &spot.place, 1e-14 * size));
+                        let short = turned.point();
+                        prop_assert!(near(&short.place, &point.place, 1e-14 * size));
                         for axis in 0..2 {
-                            prop_assert!(near(&short.slopes[axis], &spot.slopes[axis], 1e-13 * size));
+                            prop_assert!(near(&short.slopes[axis], &point.slopes[axis], 1e-13 * size));
                         }
-                        prop_assert!(near(&short.normal, &spot.normal, 1e-13));
+                        prop_assert!(near(&short.normal, &point.normal, 1e-13));
                         let twist = Twisted::new(&spin, &travel, frame);
                         let both = turned.envelopes(&twist);
                         for d in 0..3 {
@@ -142,7 +142,7 @@ mod tests {
                     }
                     let written = |u: f64, v: f64| turn * Vector3::from(patch.point(u, v)) + tip;
                     let [u, v] = at;
-                    prop_assert!((vector(&spot.place) - written(u, v)).amax() <= 1e-13 * size);
+                    prop_assert!((vector(&point.place) - written(u, v)).amax() <= 1e-13 * size);
                     let h = 1e-5;
                     let differences = [
                         (written(u + h, v) - written(u - h, v)) / (2.0 * h),
@@ -150,7 +150,7 @@ mod tests {
                     ];
                     for axis in 0..2 {
                         // Third derivatives are below 100 times the radius.
-                        prop_assert!((vector(&spot.slopes[axis]) - differences[axis]).amax() <= 1e-7 * size);
+                        prop_assert!((vector(&point.slopes[axis]) - differences[axis]).amax() <= 1e-7 * size);
                     }
                 }
             }

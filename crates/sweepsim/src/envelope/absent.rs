@@ -209,7 +209,7 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::envelope::{AnyBox, EdgeMap, PatchMap, PlacedMap, Side};
+    use crate::envelope::{AnyBox, EdgeMap, JointSide, PatchMap, PlacedMap};
     use crate::time::framed::FramedMotion;
     use proptest::prelude::*;
     use sweepsim_motion::{Apt, Law, Path, Pose, Segment, Tool};
@@ -318,7 +318,7 @@ mod tests {
                 }
                 let mut cells = Cells::new(element);
                 let pose = (segment.start(), segment.tips()[0].into());
-                let mut map = PlacedMap::new(element, &mut cells, pose, [Side::Beyond(false), Side::Beyond(true)], SIZE);
+                let mut map = PlacedMap::new(element, &mut cells, pose, [JointSide::Beyond(false), JointSide::Beyond(true)], SIZE);
                 let cell = map.place(&around([u, v], shares, size));
                 prop_assert!(!map.is_absent(&cell, &map.evaluate(&[u, v]).value), "at rest");
             }

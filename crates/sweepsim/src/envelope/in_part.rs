@@ -1,22 +1,22 @@
 //! A map over a part of its domain, as if that were all of it: for methods whose forms are those of the part.
 
 use crate::envelope::any_box::AnyBox;
-use crate::time::over::Part;
+use crate::time::over::DyadicInterval;
 use sweepsim_solve::{Affine, ChartMap, Enclosure, Preimage, Sample, Sink, UnresolvedTarget};
 
 /// A map over a part of its domain: its variables are the shares of the part.
 pub(crate) struct InPart<'m, const N: usize, M> {
     map: &'m mut M,
-    part: [Part; N],
+    part: [DyadicInterval; N],
 }
 
 impl<'m, const N: usize, M> InPart<'m, N, M> {
-    pub fn new(map: &'m mut M, part: [Part; N]) -> Self {
+    pub fn new(map: &'m mut M, part: [DyadicInterval; N]) -> Self {
         Self { map, part }
     }
 
     /// Derivatives, with what each variable of the map is in parts of another one.
-    fn scaled(&self, jacobian: &[[Enclosure; N]; N], factor: impl Fn(&Part) -> f64) -> [[Enclosure; N]; N] {
+    fn scaled(&self, jacobian: &[[Enclosure; N]; N], factor: impl Fn(&DyadicInterval) -> f64) -> [[Enclosure; N]; N] {
         jacobian.map(|row| {
             std::array::from_fn(|j| {
                 let factor = factor(&self.part[j]);
@@ -27,12 +27,12 @@ impl<'m, const N: usize, M> InPart<'m, N, M> {
 }
 
 /// The place in the domain of one in a part.
-fn place<const N: usize>(part: &[Part; N], x: &[f64; N]) -> [f64; N] {
+fn place<const N: usize>(part: &[DyadicInterval; N], x: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|j| part[j].time(x[j]))
 }
 
 /// The same for boxes.
-fn whole<const N: usize>(part: &[Part; N], bounds: &[Enclosure; N]) -> [Enclosure; N] {
+fn whole<const N: usize>(part: &[DyadicInterval; N], bounds: &[Enclosure; N]) -> [Enclosure; N] {
     std::array::from_fn(|j| Enclosure::hull(part[j].time(bounds[j].lo()), part[j].time(bounds[j].hi())))
 }
 
@@ -134,7 +134,7 @@ impl<const N: usize, M: AnyBox<N>> AnyBox<N> for InPart<'_, N, M> {
 /// Passes solutions on, with their places in the whole domain.
 pub(crate) struct OfPart<'s, const N: usize, K> {
     pub sink: &'s mut K,
-    pub part: [Part; N],
+    pub part: [DyadicInterval; N],
 }
 
 impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for OfPart<'_, N, K> {

@@ -28,7 +28,7 @@ pub(crate) use edge_map::{EdgeMap, OnEdge};
 pub(crate) use enclosures::{Brick, Near, ROOT, ROUNDING, Size};
 pub(crate) use in_part::{InPart, OfPart};
 pub(crate) use patch_map::{OnPatch, PatchMap};
-pub(crate) use placed_map::{OnPlaced, PlacedMap, Side, Twist};
+pub(crate) use placed_map::{JointSide, OnPlaced, PlacedMap, Twist};
 pub(crate) use poles::{Apart, at_pole, pole};
 
 #[cfg(test)]

@@ -203,21 +203,21 @@ impl ChartMap<3> for PatchMap<'_> {
 
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnPatch> {
         let instant = self.motion.at(self.times, x[2]);
-        let (spot, [g, g_u, g_v], g_t) = match &self.element.revolution {
+        let (point, [g, g_u, g_v], g_t) = match &self.element.revolution {
             Some(revolution) => {
                 let turned = revolution.at(&instant.placing, [x[0], x[1]]);
                 let g_t = turned.envelope(&instant.change);
-                (turned.spot(), turned.envelopes(&instant.own), g_t)
+                (turned.point(), turned.envelopes(&instant.own), g_t)
             }
             None => {
-                let (spot, fields) = self.element.spot(&instant.placing, [x[0], x[1]]);
-                (spot, fields.envelopes(&instant.own), fields.envelope(&instant.change))
+                let (point, fields) = self.element.point(&instant.placing, [x[0], x[1]]);
+                (point, fields.envelopes(&instant.own), fields.envelope(&instant.change))
             }
         };
-        let moving = instant.moving(&spot.place);
-        let [in_u, in_v] = &spot.slopes;
+        let moving = instant.moving(&point.place);
+        let [in_u, in_v] = &point.slopes;
         Sample {
-            value: [spot.place[0], spot.place[1], g],
+            value: [point.place[0], point.place[1], g],
             jacobian: [
                 [in_u[0], in_v[0], moving[0]],
                 [in_u[1], in_v[1], moving[1]],
@@ -225,10 +225,10 @@ impl ChartMap<3> for PatchMap<'_> {
             ],
             seen: OnPatch {
                 height: Near {
-                    value: spot.place[2],
+                    value: point.place[2],
                     slope: [in_u[2], in_v[2], moving[2]],
                 },
-                normal: vector(&spot.normal),
+                normal: vector(&point.normal),
             },
         }
     }

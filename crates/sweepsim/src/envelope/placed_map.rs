@@ -40,13 +40,13 @@ impl Twist {
 
 /// A side of a joint: the motion there, or none at the end of a path. The sign of `g` is then fixed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Side {
+pub(crate) enum JointSide {
     Moving(Twist),
     /// Beyond the end: `true` counts as `g < 0`.
     Beyond(bool),
 }
 
-impl Side {
+impl JointSide {
     fn negative(&self, field: &[Triples; 2], missing: &Missing, element: &PatchForms) -> Option<bool> {
         match self {
             Self::Beyond(negative) => Some(*negative),
@@ -75,16 +75,16 @@ impl Side {
         }
     }
 
-    fn seen(&self, frame: Option<&LocalFrame>) -> Seen {
+    fn seen(&self, frame: Option<&LocalFrame>) -> FramedSide {
         match self {
-            Self::Beyond(negative) => Seen::Beyond(*negative),
-            Self::Moving(twist) => Seen::Moving(Twisted::new(&twist.spin.into(), &twist.travel.into(), frame)),
+            Self::Beyond(negative) => FramedSide::Beyond(*negative),
+            Self::Moving(twist) => FramedSide::Moving(Twisted::new(&twist.spin.into(), &twist.travel.into(), frame)),
         }
     }
 }
 
 /// A side of a joint, in the frame of a patch.
-enum Seen {
+enum FramedSide {
     Moving(Twisted),
     Beyond(bool),
 }
@@ -95,11 +95,11 @@ pub(crate) struct PlacedMap<'a> {
     pub cells: &'a mut Cells,
     turn: Matrix3<f64>,
     tip: Vector3<f64>,
-    before: Side,
-    after: Side,
+    before: JointSide,
+    after: JointSide,
     size: Size,
     placing: Placing,
-    seen: [Seen; 2],
+    seen: [FramedSide; 2],
 }
 
 impl<'a> PlacedMap<'a> {
@@ -108,7 +108,7 @@ impl<'a> PlacedMap<'a> {
         element: &'a PatchForms,
         cells: &'a mut Cells,
         (turn, tip): (Matrix3<f64>, Vector3<f64>),
-        [before, after]: [Side; 2],
+        [before, after]: [JointSide; 2],
         size: Size,
     ) -> Self {
         let frame = element.frame();
@@ -236,46 +236,46 @@ impl ChartMap<2> for PlacedMap<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnPlaced> {
-        let near = |side: &Seen, envelopes: &dyn Fn(&Twisted) -> [f64; 3]| match side {
-            Seen::Moving(twist) => {
+        let near = |side: &FramedSide, envelopes: &dyn Fn(&Twisted) -> [f64; 3]| match side {
+            FramedSide::Moving(twist) => {
                 let [value, in_u, in_v] = envelopes(twist);
                 Near {
                     value,
                     slope: [in_u, in_v],
                 }
             }
-            Seen::Beyond(negative) => Near {
+            FramedSide::Beyond(negative) => Near {
                 value: if *negative { -1.0 } else { 1.0 },
                 slope: [0.0; 2],
             },
         };
-        let (spot, [before, after]) = match &self.element.revolution {
+        let (point, [before, after]) = match &self.element.revolution {
             Some(revolution) => {
                 let turned = revolution.at(&self.placing, *x);
                 let sides = self
                     .seen
                     .each_ref()
                     .map(|side| near(side, &|twist| turned.envelopes(twist)));
-                (turned.spot(), sides)
+                (turned.point(), sides)
             }
             None => {
-                let (spot, fields) = self.element.spot(&self.placing, *x);
+                let (point, fields) = self.element.point(&self.placing, *x);
                 let envelopes = |twist: &Twisted| fields.envelopes(twist);
-                (spot, self.seen.each_ref().map(|side| near(side, &envelopes)))
+                (point, self.seen.each_ref().map(|side| near(side, &envelopes)))
             }
         };
-        let [in_u, in_v] = &spot.slopes;
+        let [in_u, in_v] = &point.slopes;
         Sample {
-            value: [spot.place[0], spot.place[1]],
+            value: [point.place[0], point.place[1]],
             jacobian: [[in_u[0], in_v[0]], [in_u[1], in_v[1]]],
             seen: OnPlaced {
                 height: Near {
-                    value: spot.place[2],
+                    value: point.place[2],
                     slope: [in_u[2], in_v[2]],
                 },
                 before,
                 after,
-                normal: vector(&spot.normal),
+                normal: vector(&point.normal),
             },
         }
     }

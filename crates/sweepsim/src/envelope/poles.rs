@@ -1,6 +1,6 @@
 //! Sides of patches that have shrunk to a point: where `g` can vanish beside them, and how they are searched apart from the rest.
 
-use crate::time::over::Part;
+use crate::time::over::DyadicInterval;
 use smallvec::SmallVec;
 
 type Range = (f64, f64);
@@ -32,8 +32,8 @@ const SIDES: usize = 4;
 /// A patch without what is beside its poles, and the parts of it that are.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Apart {
-    pub rest: [Part; 2],
-    pub beside: SmallVec<[[Part; 2]; SIDES]>,
+    pub rest: [DyadicInterval; 2],
+    pub beside: SmallVec<[[DyadicInterval; 2]; SIDES]>,
 }
 
 impl Apart {
@@ -41,7 +41,7 @@ impl Apart {
     pub fn new(poles: &[[bool; 2]; 2]) -> Self {
         /// Of the patch's side. All numbers are exact.
         const NEAR: f64 = 1.0 / 16.0;
-        let (mut rest, mut beside) = ([Part::WHOLE; 2], SmallVec::new());
+        let (mut rest, mut beside) = ([DyadicInterval::WHOLE; 2], SmallVec::new());
         for axis in 0..2 {
             for (upper, _) in [false, true]
                 .into_iter()
@@ -109,7 +109,7 @@ mod tests {
         #[test]
         fn parts_fill_the_patch(poles in [[any::<bool>(), any::<bool>()], [any::<bool>(), any::<bool>()]], at in [0.0..1.0_f64, 0.0..1.0_f64]) {
             let Apart { rest, beside } = Apart::new(&poles);
-            let holds = |part: &[Part; 2]| (0..2).all(|axis| part[axis].from <= at[axis] && at[axis] < part[axis].to());
+            let holds = |part: &[DyadicInterval; 2]| (0..2).all(|axis| part[axis].from <= at[axis] && at[axis] < part[axis].to());
             let others = beside.iter().filter(|part| holds(part)).count();
             prop_assert_eq!(usize::from(holds(&rest)) + others, 1);
             let near = (0..2).any(|axis| (poles[axis][0] && at[axis] < 0.0625) || (poles[axis][1] && at[axis] >= 0.9375));

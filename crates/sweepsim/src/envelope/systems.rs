@@ -15,7 +15,7 @@
 //! `envelope/`; `methods/search.rs` sets up each equation once for all methods, and a unit test compares every map with its system.
 
 pub use crate::envelope::plane::{Plane, PlaneError};
-use crate::time::over::Part;
+use crate::time::over::DyadicInterval;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Edge, NormalField, Patch, Segment};
 use sweepsim_solve::{Enclosure, Equation, System, SystemError};
@@ -54,11 +54,11 @@ struct MotionForms {
     /// it decides alone.
     is_exact: bool,
     /// The part of the motion over which the forms of this, and those made of it, are.
-    part: Part,
+    part: DyadicInterval,
 }
 
 /// A form in `t`, over a part of the motion.
-fn in_part(part: &Part, coefficients: Vec<f64>, error: f64) -> Bernstein {
+fn in_part(part: &DyadicInterval, coefficients: Vec<f64>, error: f64) -> Bernstein {
     let whole = in_time(coefficients, error);
     if part.is_whole() {
         whole
@@ -74,7 +74,7 @@ fn in_time(coefficients: Vec<f64>, error: f64) -> Bernstein {
 }
 
 impl MotionForms {
-    fn new(segment: &Segment, part: Part) -> Self {
+    fn new(segment: &Segment, part: DyadicInterval) -> Self {
         let in_time = |coefficients: Vec<f64>, error: f64| in_part(&part, coefficients, error);
         let own = in_time(segment.weights().to_vec(), 0.0);
         let (points, weights) = segment.points();
@@ -158,11 +158,11 @@ impl PatchMotion {
     /// The forms of a patch moved by a segment.
     #[must_use]
     pub fn new(patch: &Patch, segment: &Segment) -> Self {
-        Self::over(patch, segment, [Part::WHOLE; 3])
+        Self::over(patch, segment, [DyadicInterval::WHOLE; 3])
     }
 
     /// The same over a part of the patch and of the motion, as forms of its own.
-    pub(crate) fn over(patch: &Patch, segment: &Segment, [u, v, time]: [Part; 3]) -> Self {
+    pub(crate) fn over(patch: &Patch, segment: &Segment, [u, v, time]: [DyadicInterval; 3]) -> Self {
         let motion = MotionForms::new(segment, time);
         let restricted = |form: Bernstein| {
             let parts = [u, v].into_iter().enumerate().filter(|(_, part)| !part.is_whole());
@@ -231,11 +231,11 @@ impl EdgeMotion {
     /// The forms of an edge moved by a segment.
     #[must_use]
     pub fn new(edge: &Edge, segment: &Segment) -> Self {
-        Self::over(edge, segment, Part::WHOLE)
+        Self::over(edge, segment, DyadicInterval::WHOLE)
     }
 
     /// The same over a part of the motion, as forms of its own.
-    pub(crate) fn over(edge: &Edge, segment: &Segment, part: Part) -> Self {
+    pub(crate) fn over(edge: &Edge, segment: &Segment, part: DyadicInterval) -> Self {
         let motion = MotionForms::new(segment, part);
         Self {
             place: motion.place(edge.position(), edge.weight()),

@@ -3,7 +3,7 @@
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT};
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
-use crate::time::over::{Over, Part};
+use crate::time::over::{DyadicInterval, Over};
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{CancelOnly, ChartMap, Sink};
@@ -15,7 +15,7 @@ pub(crate) struct Charts;
 impl Charts {
     /// Solves Eq. 6 for a part of a patch. Solutions on its upper sides belong to other parts.
     pub fn on_part(
-        [u, v]: [Part; 2],
+        [u, v]: [DyadicInterval; 2],
         query: Query,
         map: &mut PatchMap,
         solvers: &mut Solvers,

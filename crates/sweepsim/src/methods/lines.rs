@@ -5,14 +5,14 @@
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
 use crate::envelope::{
-    AnyBox, Apart, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side,
+    AnyBox, Apart, EdgeMap, InPart, JointSide, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING,
 };
 use crate::methods::charts::Charts;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
 use crate::methods::placement::sides;
 use crate::methods::workspace::Solvers;
-use crate::time::over::{Over, Part};
+use crate::time::over::{DyadicInterval, Over};
 use crate::time::path_parts::PathPart;
 use rayon::prelude::*;
 use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
@@ -38,7 +38,7 @@ struct PartBundles {
 
 impl PartBundles {
     /// Those of `parts[at]`.
-    fn new(tool: &Tool, parts: &[PathPart], at: usize, part: Part) -> Self {
+    fn new(tool: &Tool, parts: &[PathPart], at: usize, part: DyadicInterval) -> Self {
         let segment = &parts[at].segment;
         let face = |patch: &Patch| {
             let [u, v] = Apart::new(&patch.shrunk_sides()).rest;
@@ -87,7 +87,7 @@ impl PartBundles {
 fn bundled<const N: usize, M: AnyBox<N>>(
     bundle: &Bundle<N>,
     map: &mut M,
-    part: [Part; N],
+    part: [DyadicInterval; N],
     query: Query,
     solvers: &mut Solvers,
     sink: &mut impl Sink<N, M::Seen>,
@@ -99,7 +99,7 @@ fn bundled<const N: usize, M: AnyBox<N>>(
         sink: &mut sink,
         rest: &mut rest,
     };
-    if part.iter().all(Part::is_whole) {
+    if part.iter().all(DyadicInterval::is_whole) {
         solvers.bundles.solve(bundle, map, query.lines, &mut decided, monitor);
     } else {
         let map = InPart::new(map, part);
@@ -189,7 +189,14 @@ impl CrossingMethod<'_> for Lines {
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         match &self.bundles[query.part].edges[query.number] {
             Some(bundle) => {
-                if let Some(mask) = bundled(bundle, map, [Part::WHOLE, query.times.0], query, solvers, sink) {
+                if let Some(mask) = bundled(
+                    bundle,
+                    map,
+                    [DyadicInterval::WHOLE, query.times.0],
+                    query,
+                    solvers,
+                    sink,
+                ) {
                     let lines = &query.lines.clone().masked(Some(&mask));
                     Charts.on_edge(Query { lines, ..query }, map, solvers, sink);
                 }
@@ -209,7 +216,7 @@ impl CrossingMethod<'_> for Lines {
         let placed = &self.bundles[query.part].placed[usize::from(end == SegmentEnd::Finish)];
         match placed.get(query.number).and_then(Option::as_ref) {
             Some(bundle) => {
-                if let Some(mask) = bundled(bundle, map, [Part::WHOLE; 2], query, solvers, sink) {
+                if let Some(mask) = bundled(bundle, map, [DyadicInterval::WHOLE; 2], query, solvers, sink) {
                     let lines = &query.lines.clone().masked(Some(&mask));
                     Charts.on_placed(Query { lines, ..query }, end, map, solvers, sink);
                 }
@@ -220,10 +227,10 @@ impl CrossingMethod<'_> for Lines {
 }
 
 /// `g` at a placement, in the patch's parameters; beyond the ends of a path, a constant of the same sign.
-fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
+fn condition(side: &JointSide, field: &NormalField) -> Option<Bernstein> {
     let twist = match side {
-        Side::Beyond(negative) => return Some(Bernstein::constant(2, if *negative { -1.0 } else { 1.0 })),
-        Side::Moving(twist) => twist,
+        JointSide::Beyond(negative) => return Some(Bernstein::constant(2, if *negative { -1.0 } else { 1.0 })),
+        JointSide::Moving(twist) => twist,
     };
     let pairs = || {
         let turning = twist.spin.iter().zip(field.moment());
@@ -296,7 +303,7 @@ mod tests {
                 prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
                 let [before, after] = [
                     crate::methods::placement::twist(&segment, SegmentEnd::Start, &segment.start()),
-                    Side::Beyond(true),
+                    JointSide::Beyond(true),
                 ];
                 let (turn, own_tip) = (segment.start(), nalgebra::Vector3::from(segment.tips()[0]));
                 let map = PlacedMap::new(element, &mut cells, (turn, own_tip), [before, after], SIZE);

@@ -3,7 +3,7 @@
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
 use crate::methods::lattice::Lattice;
 use crate::methods::workspace::Solvers;
-use crate::time::over::{Over, Part};
+use crate::time::over::{DyadicInterval, Over};
 use crate::time::path_parts::PathPart;
 use std::ops::Range;
 use sweepsim_motion::{SegmentEnd, Tool};
@@ -18,7 +18,7 @@ pub(crate) struct Query<'a> {
     pub number: usize,
     pub lines: &'a Lattice<'a>,
     /// The part of the motion outside which the tool is not over the lines, and its piece.
-    pub times: (Part, u32),
+    pub times: (DyadicInterval, u32),
     /// Tells the inner loops whether to stop.
     pub monitor: &'a dyn Monitor,
 }

@@ -1,14 +1,14 @@
 //! The tool at rest between two motions: at a kink of the path, or at an end of it.
 
 use crate::cutter::outline::Outline;
-use crate::envelope::{Near, OnPlaced, PlacedMap, ROOT, Side, Twist};
+use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, ROOT, Twist};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::method::CrossingMethod;
 use crate::methods::search::Search;
 use crate::methods::translation::{self, Collector, Neighbour, Resting};
 use crate::methods::turning;
 use crate::methods::workspace::Workspace;
-use crate::time::over::Part;
+use crate::time::over::DyadicInterval;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::back_size;
 use nalgebra::{Matrix3, Vector3};
@@ -20,9 +20,9 @@ use sweepsim_solve::Preimage;
 const SEVERAL: usize = 4;
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
-pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
+pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> JointSide {
     let [spin, travel] = segment.velocity(end).map(Vector3::from);
-    Side::Moving(Twist {
+    JointSide::Moving(Twist {
         sizes: [spin, travel].map(|v| back_size(&[*turn], &v, segment.turns().len() > 1)),
         spin: turned_back(turn, &spin).into(),
         travel: turned_back(turn, &travel).into(),
@@ -30,13 +30,16 @@ pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> 
 }
 
 /// The motions before and after the placement at the start of a part, or at the end of the last part of a path.
-pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [Side; 2] {
+pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [JointSide; 2] {
     let segment = &parts[at].segment;
     if end == SegmentEnd::Finish {
-        return [twist(segment, SegmentEnd::Finish, &segment.end()), Side::Beyond(true)];
+        return [
+            twist(segment, SegmentEnd::Finish, &segment.end()),
+            JointSide::Beyond(true),
+        ];
     }
     let turn = segment.start();
-    let before = at.checked_sub(1).map_or(Side::Beyond(false), |k| {
+    let before = at.checked_sub(1).map_or(JointSide::Beyond(false), |k| {
         twist(&parts[k].segment, SegmentEnd::Finish, &turn)
     });
     [before, twist(segment, SegmentEnd::Start, &turn)]
@@ -117,12 +120,12 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// The turn and the motions of a tool of revolution at a placement between parts along which it stands: turned about its own axis, it is the same, so that one orientation serves all of
     /// these, and turns about that axis move none of its points out of its surface.
-    fn standing(&self, at: usize, end: SegmentEnd) -> Option<(Matrix3<f64>, [Side; 2])> {
+    fn standing(&self, at: usize, end: SegmentEnd) -> Option<(Matrix3<f64>, [JointSide; 2])> {
         if !self.closed || self.outline.is_none() || !self.neighbours(at, end).all(translation::stands) {
             return None;
         }
         let along = |part: usize, end: SegmentEnd| match Neighbour::of(&self.parts[part], end) {
-            Some(Neighbour::Along(travel)) => Some(Side::Moving(Twist {
+            Some(Neighbour::Along(travel)) => Some(JointSide::Moving(Twist {
                 spin: [0.0; 3],
                 travel,
                 sizes: [[0.0; 3], travel.map(f64::abs)],
@@ -130,8 +133,8 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             _ => None,
         };
         let sides = match (end, at.checked_sub(1)) {
-            (SegmentEnd::Finish, _) => [along(at, end)?, Side::Beyond(true)],
-            (SegmentEnd::Start, None) => [Side::Beyond(false), along(at, end)?],
+            (SegmentEnd::Finish, _) => [along(at, end)?, JointSide::Beyond(true)],
+            (SegmentEnd::Start, None) => [JointSide::Beyond(false), along(at, end)?],
             (SegmentEnd::Start, Some(before)) => [along(before, SegmentEnd::Finish)?, along(at, end)?],
         };
         Some((Matrix3::identity(), sides))
@@ -191,7 +194,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                     source,
                 })
             });
-            let query = self.query((at, (Part::WHOLE, ROOT.1)), number);
+            let query = self.query((at, (DyadicInterval::WHOLE, ROOT.1)), number);
             self.method
                 .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
             if cells.trim() {

@@ -13,7 +13,7 @@ use crate::methods::translation::{self, Ceiling, Collector, Elements, Grazed, He
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
-use crate::time::over::{Over, Part, comes_near};
+use crate::time::over::{DyadicInterval, Over, comes_near};
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
@@ -257,7 +257,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         comes_near(segment, self.lines.window(), [margin(0), margin(1)])
     }
 
-    pub(super) fn query(&self, (part, times): (usize, (Part, u32)), number: usize) -> Query<'_> {
+    pub(super) fn query(&self, (part, times): (usize, (DyadicInterval, u32)), number: usize) -> Query<'_> {
         Query {
             part,
             number,
@@ -285,7 +285,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
     fn patches(
         &self,
-        (at, within): (usize, (Part, u32)),
+        (at, within): (usize, (DyadicInterval, u32)),
         times: &mut Times,
         space: &mut Workspace,
         harvest: &mut Harvest,
@@ -334,7 +334,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
     fn edges(
         &self,
-        (at, within): (usize, (Part, u32)),
+        (at, within): (usize, (DyadicInterval, u32)),
         times: &mut Times,
         space: &mut Workspace,
         harvest: &mut Harvest,

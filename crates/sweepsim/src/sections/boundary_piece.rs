@@ -42,7 +42,7 @@ pub(crate) struct Moving<'a> {
 }
 
 /// A point, and two conditions: it belongs to the boundary of the move where their signs differ.
-pub(crate) struct Seen {
+pub(crate) struct BoundarySample {
     pub point: BoundaryPoint,
     pub sides: Option<[f64; 2]>,
 }
@@ -63,11 +63,11 @@ impl<'a> Moving<'a> {
     }
 
     /// The point of a piece at its parameters: `u, v, t` of patches, `r, t` of edges, `u, v` of placed patches.
-    pub fn see(&self, piece: BoundaryPiece, x: &[f64]) -> Seen {
+    pub fn see(&self, piece: BoundaryPiece, x: &[f64]) -> BoundarySample {
         match piece {
             BoundaryPiece::Patch(k) => {
                 let seen = self.on_patch(k, [x[0], x[1]], x[2]);
-                Seen {
+                BoundarySample {
                     point: seen.0,
                     sides: None,
                 }
@@ -89,7 +89,7 @@ impl<'a> Moving<'a> {
                     self.part().segment.start(),
                     &field,
                 );
-                Seen {
+                BoundarySample {
                     point,
                     sides: Some([before, after]),
                 }
@@ -102,7 +102,7 @@ impl<'a> Moving<'a> {
                     self.part().segment.end(),
                     &field,
                 );
-                Seen {
+                BoundarySample {
                     point,
                     sides: Some([before, -1.0]),
                 }
@@ -128,7 +128,7 @@ impl<'a> Moving<'a> {
         (seen, [normal, arm])
     }
 
-    fn on_edge(&self, k: usize, r: f64, t: f64) -> Seen {
+    fn on_edge(&self, k: usize, r: f64, t: f64) -> BoundarySample {
         let (position, fields) = self.edges[k].rim(r);
         let moment = self.times.at(t);
         let [a, b] = fields.map(|[normal, arm]| moment.own_spin.dot(&arm) + moment.travel.dot(&normal));
@@ -136,7 +136,7 @@ impl<'a> Moving<'a> {
         let [n, m] = fields.map(|[normal, _]| moment.turn * normal);
         let (p, q) = (a.abs() / n.norm(), b.abs() / m.norm());
         let (n, m) = (n / n.norm(), m / m.norm());
-        Seen {
+        BoundarySample {
             point: BoundaryPoint {
                 position: (moment.turn * position + moment.tip).into(),
                 normal: unit(n * q + m * p),

@@ -15,12 +15,12 @@ const STEPS: f64 = 16.0;
 /// The part of a motion, from `t = from` to `t = from + length`, outside which a cylinder about the tool's axis is not over a window of `x` and `y`. It is the whole
 /// motion, 0 and 1, unless it is much shorter. The length is a power of two: scaling by it is exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct DyadicInterval {
     pub from: f64,
     pub length: f64,
 }
 
-impl Part {
+impl DyadicInterval {
     pub const WHOLE: Self = Self { from: 0.0, length: 1.0 };
 
     /// The shortest that holds an interval.
@@ -79,7 +79,7 @@ pub(crate) struct Over {
 
 impl Over {
     /// The part of a motion outside which the tool is farther from the window than the margin.
-    pub fn part(&self, segment: &Segment) -> Part {
+    pub fn part(&self, segment: &Segment) -> DyadicInterval {
         part_over(segment, self)
     }
 }
@@ -91,7 +91,7 @@ fn part_over(
         window,
         margin,
     }: &Over,
-) -> Part {
+) -> DyadicInterval {
     let (points, weights) = segment.points();
     // Most moves are no longer than a grid.
     let reach = cylinder.radius + cylinder.z[0].abs().max(cylinder.z[1].abs()) + margin;
@@ -101,7 +101,7 @@ fn part_over(
         (hi - lo) * MOST > window[k][1] - window[k][0] + 2.0 * reach
     };
     if !(is_long(0) || is_long(1)) {
-        return Part::WHOLE;
+        return DyadicInterval::WHOLE;
     }
     let own = offsets(segment, *cylinder);
     let tips = [0, 1].map(|k| [window[k][0] - own[k][1] - margin, window[k][1] - own[k][0] + margin]);
@@ -113,9 +113,9 @@ fn part_over(
         .collect();
     let ends = [false, true].map(|last| extreme(&curve, [0.0, 1.0], &tips, last, HALVINGS));
     match ends {
-        [Some(from), Some(to)] => Part::around([from, to]),
+        [Some(from), Some(to)] => DyadicInterval::around([from, to]),
         // Never: any part will do.
-        _ => Part::around([0.0; 2]),
+        _ => DyadicInterval::around([0.0; 2]),
     }
 }
 

@@ -12,7 +12,7 @@ const RELATIVE: f64 = 1e-4;
 
 /// On which side of the surface depths count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum SurfaceSide {
     Inside,
     Outside,
 }
@@ -56,8 +56,8 @@ impl PartialEq for Stretch {
 impl Eq for Stretch {}
 
 /// The greatest depth of the material of some lines, and where it is, in the world. It is exact to a ten-thousandth, unless the budget ends first.
-pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo, side: Side) -> (f64, [f64; 3]) {
-    let sign = if side == Side::Inside { -1.0 } else { 1.0 };
+pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo, side: SurfaceSide) -> (f64, [f64; 3]) {
+    let sign = if side == SurfaceSide::Inside { -1.0 } else { 1.0 };
     let place = |line: u32, z: f64| {
         let (i, j) = grid.place(line as usize);
         grid.frame().to_world([grid.x(i), grid.y(j), z])

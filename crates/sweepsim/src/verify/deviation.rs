@@ -4,7 +4,7 @@
 //! target is missing from one side to the other (a web), its own middle is the deepest such point, and no surface of the part is there to tell. So points
 //! of the target's surface count there as well, with their distance from the part, but at most the thickness of what is missing.
 
-use super::depth::{Side, greatest};
+use super::depth::{SurfaceSide, greatest};
 use super::lines::Lines;
 use super::regions::{Extent, Webs, connected, joined};
 use super::target::Target;
@@ -115,8 +115,8 @@ impl TileDeviation {
         Self {
             sums: surface(remaining, target, share),
             greatest: [
-                greatest(&inside, &grid, to, Side::Inside).0,
-                greatest(&outside, &grid, to, Side::Outside).0,
+                greatest(&inside, &grid, to, SurfaceSide::Inside).0,
+                greatest(&outside, &grid, to, SurfaceSide::Outside).0,
             ],
             beyond_stock: solid.minus(&before).length() * dx * dy,
         }

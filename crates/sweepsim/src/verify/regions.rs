@@ -1,6 +1,6 @@
 //! Connected pieces of material that are missing, or left, beyond the limits.
 
-use super::depth::{Side, greatest};
+use super::depth::{SurfaceSide, greatest};
 use super::deviation::{DeviationKind, Region};
 use super::lines::{Heights, Lines};
 use super::target::Target;
@@ -161,8 +161,8 @@ pub(super) fn connected(
         }
     }
     let side = match kind {
-        DeviationKind::Gouge => Side::Inside,
-        DeviationKind::Excess => Side::Outside,
+        DeviationKind::Gouge => SurfaceSide::Inside,
+        DeviationKind::Excess => SurfaceSide::Outside,
     };
     let mut regions: Vec<Extent> = groups
         .into_values()

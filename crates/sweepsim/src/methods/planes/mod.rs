@@ -11,7 +11,7 @@ use crate::methods::lattice::Lattice;
 use crate::methods::method::{CrossingMethod, Query, WorkShare};
 use crate::methods::planes::slicer::Slicer;
 use crate::methods::workspace::Solvers;
-use crate::time::over::{Over, Part};
+use crate::time::over::{DyadicInterval, Over};
 use crate::time::path_parts::PathPart;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ struct Forms {
 }
 
 impl Forms {
-    fn new(tool: &Tool, segment: &Segment, part: Part) -> Self {
+    fn new(tool: &Tool, segment: &Segment, part: DyadicInterval) -> Self {
         let [first, last] = segment.tips().map(Vector3::from);
         let at_rest = |turn: Matrix3<f64>, tip: &Vector3<f64>| {
             let patches = tool.patches().iter();
@@ -85,7 +85,7 @@ where
 fn slice_moving<const N: usize, M: AnyBox<N, Cell = Brick>>(
     map: &mut M,
     system: impl FnOnce() -> Result<System, SystemError>,
-    part: [Part; N],
+    part: [DyadicInterval; N],
     query: Query,
     solvers: &mut Solvers,
     sink: &mut impl Sink<N, M::Seen>,
@@ -94,7 +94,7 @@ where
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
     let solvers = (&mut solvers.slicer, &solvers.moving);
-    if part.iter().all(Part::is_whole) {
+    if part.iter().all(DyadicInterval::is_whole) {
         return slice(map, system, query, solvers, sink);
     }
     let mark = map.mark();
@@ -135,7 +135,14 @@ impl CrossingMethod<'_> for Planes {
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         let system = || self.forms[query.part].edges[query.number].section(&plane(query.lines));
-        if !slice_moving(map, system, [Part::WHOLE, query.times.0], query, solvers, sink) {
+        if !slice_moving(
+            map,
+            system,
+            [DyadicInterval::WHOLE, query.times.0],
+            query,
+            solvers,
+            sink,
+        ) {
             Charts.on_edge(query, map, solvers, sink);
         }
     }

@@ -13,7 +13,7 @@
 
 mod ends;
 
-use super::curves::{Beside, Graph, Heading, Parabola, Seen, Turned, ring, slant, torus};
+use super::curves::{Beside, Graph, Heading, Parabola, Turned, TurnedPoint, ring, slant, torus};
 use super::rows::{Row, Sector};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
@@ -188,7 +188,12 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     }
 
     /// `near` gives the point of a graph at `s` where that is [near](Self::is_near), if it has more digits than from `p`.
-    fn all<G: Turned>(&mut self, graphs: &[G], parabola: Parabola, near: impl Fn(&G, f64, bool) -> Option<Seen>) {
+    fn all<G: Turned>(
+        &mut self,
+        graphs: &[G],
+        parabola: Parabola,
+        near: impl Fn(&G, f64, bool) -> Option<TurnedPoint>,
+    ) {
         let side = self.side;
         let turn = parabola.turn().map(|p| side * p);
         for graph in graphs {
@@ -275,7 +280,7 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     }
 
     /// The lines over what a bend sweeps. `find` gives the point at a value of `s`.
-    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, find: impl Fn(&Self, f64) -> Option<Seen>) {
+    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, find: impl Fn(&Self, f64) -> Option<TurnedPoint>) {
         let [low, high] = bend.s;
         let margins = bend.margins;
         let wide = [low - margins[0], high + margins[1]];
@@ -303,11 +308,11 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
                     continue;
                 }
                 let doubtful = s < sure[0] || s > sure[1];
-                let Some(Seen { out, spot, error }) = find(self, s.clamp(low, high)) else {
+                let Some(TurnedPoint { out, point, error }) = find(self, s.clamp(low, high)) else {
                     self.lines.open(lattice.line(i, j));
                     continue;
                 };
-                if spot.jump == 0 && spot.certain && !doubtful {
+                if point.jump == 0 && point.certain && !doubtful {
                     continue;
                 }
                 let error = if doubtful {
@@ -317,26 +322,26 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
                 } else {
                     error
                 };
-                let place = self.place([x, y], [out, spot.q], s, error);
+                let place = self.place([x, y], [out, point.q], s, error);
                 let line = lattice.line(i, j);
                 match place {
                     Place::Outside => {}
-                    Place::Inside([c, n]) if spot.certain && !doubtful => {
+                    Place::Inside([c, n]) if point.certain && !doubtful => {
                         let t = n.atan2(c) / turn;
                         let [fx, fy] = arc.from;
                         // Outwards and ahead after the turn.
                         let outward = [c * fx - side * n * fy, c * fy + side * n * fx];
                         let ahead = [-side * outward[1], side * outward[0]];
-                        let [nq, np, nz] = spot.normal;
+                        let [nq, np, nz] = point.normal;
                         let normal = [
                             nq * ahead[0] - side * np * outward[0],
                             nq * ahead[1] - side * np * outward[1],
                             nz,
                         ];
-                        let z = self.heading.tip[2] + t * self.heading.way[2] + spot.z;
+                        let z = self.heading.tip[2] + t * self.heading.way[2] + point.z;
                         let normal = unit(normal.into());
                         let source = (self.source)(t);
-                        self.lines.crossing(line, z, spot.jump * bend.sense, normal, source);
+                        self.lines.crossing(line, z, point.jump * bend.sense, normal, source);
                     }
                     _ => self.lines.open(line),
                 }

@@ -1,6 +1,6 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::curves::{Graph, Heading, Point, quarters, ring, slant, torus};
+use super::curves::{Graph, GraphCrossing, Heading, quarters, ring, slant, torus};
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
@@ -70,7 +70,7 @@ struct Lanes {
     place: [usize; LANES],
     met: [f64; LANES],
     ahead: [f64; LANES],
-    points: [Point; LANES],
+    points: [GraphCrossing; LANES],
 }
 
 impl Default for Lanes {
@@ -84,13 +84,13 @@ impl Default for Lanes {
             place: [0; LANES],
             met: none,
             ahead: none,
-            points: [Point::default(); LANES],
+            points: [GraphCrossing::default(); LANES],
         }
     }
 }
 
 /// What part of a strip is searched.
-struct Part {
+struct StripPart {
     /// The range of `p`, with the ends of the span a little wider, and a little narrower.
     wide: [f64; 2],
     sure: [f64; 2],
@@ -212,7 +212,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             front + blur + heading.slack + heading.length,
         ];
         let jump = graph.jump(sure);
-        let part = Part {
+        let part = StripPart {
             wide,
             sure,
             span: [low, high],
@@ -236,7 +236,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
 
     /// Some lines of one column.
     #[inline]
-    fn row<G: Graph>(&mut self, graph: &G, part: &Part, (i, x): (usize, f64), [first, last]: [usize; 2]) {
+    fn row<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, x): (usize, f64), [first, last]: [usize; 2]) {
         let heading = self.heading;
         let lattice = self.lines.lines;
         let count = last + 1 - first;
@@ -247,7 +247,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             let y = lattice.coordinate(1, first + k) - heading.tip[1];
             (*p, *q) = (p_base + ux * y, q_base + uy * y);
         }
-        let Part { wide, sure, .. } = part;
+        let StripPart { wide, sure, .. } = part;
         let (Some(error), Some(jump)) = (part.error, part.jump) else {
             for k in 0..count {
                 let [p, q] = [self.lanes.p[k], self.lanes.q[k]];
@@ -291,7 +291,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         for k in 0..met {
             if lattice.asks(i, lanes.place[k]) {
                 let t = lanes.ahead[k] * rate;
-                let Point { z, normal } = lanes.points[k];
+                let GraphCrossing { z, normal } = lanes.points[k];
                 let z = heading.tip[2] + t * heading.way[2] + z;
                 let line = lattice.line(i, lanes.place[k]);
                 let normal = heading.unit_in_space(normal);
@@ -301,10 +301,10 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
     }
 
     /// One line, which may be near an end of the span, or of the way.
-    fn one<G: Graph>(&mut self, graph: &G, part: &Part, (i, j): (usize, usize), [p, q]: [f64; 2]) {
+    fn one<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, j): (usize, usize), [p, q]: [f64; 2]) {
         let heading = self.heading;
         let lattice = self.lines.lines;
-        let Part {
+        let StripPart {
             sure,
             span: [low, high],
             blurs,
@@ -318,10 +318,10 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             }
             return;
         }
-        let spot = graph.at(p);
-        let ahead = q - spot.q;
-        let error = heading.slack * (2.0 + spot.slope.abs());
-        if ahead < -error || ahead > heading.length + error || (spot.jump == 0 && spot.certain) {
+        let point = graph.at(p);
+        let ahead = q - point.q;
+        let error = heading.slack * (2.0 + point.slope.abs());
+        if ahead < -error || ahead > heading.length + error || (point.jump == 0 && point.certain) {
             return;
         }
         if !lattice.asks(i, j) {
@@ -329,14 +329,14 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         }
         let line = lattice.line(i, j);
         // NaN is uncertain.
-        if !(spot.certain && ahead > error && ahead < heading.length - error) {
+        if !(point.certain && ahead > error && ahead < heading.length - error) {
             self.lines.open(line);
             return;
         }
         let t = ahead / heading.length;
-        let z = heading.tip[2] + t * heading.way[2] + spot.z;
-        let normal = heading.unit_in_space(spot.normal);
-        self.lines.crossing(line, z, spot.jump, normal, (self.source)(t));
+        let z = heading.tip[2] + t * heading.way[2] + point.z;
+        let normal = heading.unit_in_space(point.normal);
+        self.lines.crossing(line, z, point.jump, normal, (self.source)(t));
     }
 
     /// Leaves the lines of a strip that is too narrow open.

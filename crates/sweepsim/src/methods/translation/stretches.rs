@@ -10,7 +10,7 @@ const FLATTEST: f64 = 1e-6;
 const FLAT: f64 = 1.52;
 
 /// A range of heights of a stretch.
-pub(super) struct Part {
+pub(super) struct HeightRange {
     /// The first one counts, the last one does not.
     pub heights: [f64; 2],
     /// At both ends, if the arc is flat nowhere between.
@@ -145,11 +145,11 @@ impl Stretch {
     }
 
     /// Its parts by height, ascending and without gaps: where an arc is not [`FLAT`], with the normals at the ends of the part.
-    pub fn parts(&self) -> Vec<Part> {
+    pub fn parts(&self) -> Vec<HeightRange> {
         let [low, high] = self.heights;
         let bounds = [f64::NEG_INFINITY, f64::INFINITY];
         let whole = |normals| {
-            vec![Part {
+            vec![HeightRange {
                 heights: bounds,
                 normals,
             }]
@@ -182,7 +182,7 @@ impl Stretch {
                 steep[k]
             }
         });
-        let part = |heights: [f64; 2], normals| (heights[0] < heights[1]).then_some(Part { heights, normals });
+        let part = |heights: [f64; 2], normals| (heights[0] < heights[1]).then_some(HeightRange { heights, normals });
         [
             part([bounds[0], from], None),
             part([from, to], Some(steep.map(normal))),

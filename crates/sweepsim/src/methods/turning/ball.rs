@@ -10,7 +10,7 @@
 
 use super::axis_motion::{Bounds, Moment};
 use super::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
-use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
+use super::shell::{Ends, Falls, Meeting, Passage, Shell, ShellPoint};
 use crate::cutter::outline::Ball;
 use nalgebra::{Vector2, Vector3};
 
@@ -220,11 +220,11 @@ impl Shell for Ball {
     }
 
     #[inline]
-    fn spot(&self, at: &Centre, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> Spot {
+    fn point(&self, at: &Centre, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> ShellPoint {
         let up = if sheet == 0 { -meeting.half } else { meeting.half };
         let [x, y] = meeting.place;
         let lift = 0.5 * rise * step;
-        Spot {
+        ShellPoint {
             height: at.place.z + up + lift,
             normal: Vector3::new(x - at.rate.x * step, y - at.rate.y * step, up + lift - at.rate.z * step),
             along: x * at.axis.x + y * at.axis.y + up * at.axis.z,

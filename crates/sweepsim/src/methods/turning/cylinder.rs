@@ -20,7 +20,7 @@ use super::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
 use super::lean::Lean;
-use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
+use super::shell::{Ends, Falls, Meeting, Passage, Shell, ShellPoint};
 use nalgebra::Vector3;
 
 /// The part of a cylinder between two heights.
@@ -321,7 +321,7 @@ impl Shell for Cylinder {
     }
 
     #[inline]
-    fn spot(&self, at: &Lean, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> Spot {
+    fn point(&self, at: &Lean, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> ShellPoint {
         let alpha = if sheet == 0 { -meeting.half } else { meeting.half };
         let [q, delta] = meeting.place;
         let ([s, k], [ux, uy]) = (at.tilt, at.ahead);
@@ -333,7 +333,7 @@ impl Shell for Cylinder {
         let side = delta - vb * step;
         let up = -(alpha * at.rate[0] + delta * at.rate[1]) * step;
         let level = s * up - k * out;
-        Spot {
+        ShellPoint {
             height: at.tip[2] + s * alpha + k * zeta + lift,
             normal: Vector3::new(level * ux - side * uy, level * uy + side * ux, s * out + k * up),
             along: zeta,

@@ -24,7 +24,7 @@ use axis_motion::{AxisMotion, Moment};
 use blocks::around;
 use cylinder::{Cylinder, standing};
 use disc::Disc;
-use resting::{Resting, Side};
+use resting::{Resting, RestingSide};
 use rim::RimSearch;
 use shell::{Shell, ShellSearch};
 use spans::{Span, Verdict, settle};
@@ -237,8 +237,8 @@ pub(crate) fn placement(
         SegmentEnd::Finish => (own.end(), own.tips()[1]),
     };
     let side = |segment: Option<&Segment>, end: SegmentEnd, beyond: bool| match segment {
-        Some(segment) => Side::Moving(Moment::resting(&turn, tip, segment.velocity(end))),
-        None => Side::Beyond(beyond),
+        Some(segment) => RestingSide::Moving(Moment::resting(&turn, tip, segment.velocity(end))),
+        None => RestingSide::Beyond(beyond),
     };
     let sides = [
         side(before, SegmentEnd::Finish, false),

@@ -19,7 +19,7 @@ const STEEP: f64 = 1e-3;
 
 /// The tool at rest, seen from one side.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Side {
+pub(super) enum RestingSide {
     Moving(Moment),
     /// Beyond an end of the path; whether that counts as moving inwards.
     Beyond(bool),
@@ -29,7 +29,7 @@ pub(super) enum Side {
 pub(super) struct Resting<'a> {
     /// Without a motion.
     pub pose: Moment,
-    pub sides: &'a [Side; 2],
+    pub sides: &'a [RestingSide; 2],
     pub source: Source,
 }
 
@@ -56,8 +56,8 @@ impl Resting<'_> {
                 let sign = |sheet: usize| (meeting.g[sheet] < 0.0, !shell.doubtful(limits, &meeting, sheet));
                 [sign(0), sign(1)]
             }
-            (None, Side::Beyond(negative)) => [(*negative, true); 2],
-            (None, Side::Moving(_)) => [(false, false); 2],
+            (None, RestingSide::Beyond(negative)) => [(*negative, true); 2],
+            (None, RestingSide::Moving(_)) => [(false, false); 2],
         };
         let views = [view(0), view(1)];
         for sheet in 0..2 {
@@ -65,8 +65,8 @@ impl Resting<'_> {
             if before.1 && after.1 && before.0 == after.0 {
                 continue;
             }
-            let spot = shell.spot(pose, &own, (sheet, 0.0, 0.0), searching.slack);
-            let inside = shell.ends().hold(spot.along, spot.error);
+            let point = shell.point(pose, &own, (sheet, 0.0, 0.0), searching.slack);
+            let inside = shell.ends().hold(point.along, point.error);
             if inside == Some(false) || !searching.collector.lines.asks(place.0, place.1) {
                 continue;
             }
@@ -79,7 +79,7 @@ impl Resting<'_> {
             let jump = if sheet == 1 { -change } else { change };
             searching
                 .collector
-                .crossing(number, spot.height, jump, unit(spot.normal), self.source);
+                .crossing(number, point.height, jump, unit(point.normal), self.source);
         }
     }
 
@@ -95,7 +95,7 @@ impl Resting<'_> {
         let wanted = |block: [Range; 2]| {
             let signs = |side: usize| match (&self.sides[side], &motions[side]) {
                 (_, Some((posed, limits))) => shell.signs(limits, [posed; 2], block, 0.0),
-                (Side::Beyond(true), _) => [Sign::Negative; 2],
+                (RestingSide::Beyond(true), _) => [Sign::Negative; 2],
                 _ => [Sign::Positive; 2],
             };
             let (before, after) = (signs(0), signs(1));
@@ -112,8 +112,8 @@ impl Resting<'_> {
 
     fn moving(&self) -> [Option<&Moment>; 2] {
         [0, 1].map(|n| match &self.sides[n] {
-            Side::Moving(moment) => Some(moment),
-            Side::Beyond(_) => None,
+            RestingSide::Moving(moment) => Some(moment),
+            RestingSide::Beyond(_) => None,
         })
     }
 
@@ -162,7 +162,7 @@ impl Resting<'_> {
             .map(|side| side.map(|moment| Placed::new(moment, disc.height)));
         // No line at all where both signs are certain to be equal all over it.
         let [before, after] = [0, 1].map(|n| match (&self.sides[n], &posed[n]) {
-            (Side::Beyond(negative), _) => Some(*negative),
+            (RestingSide::Beyond(negative), _) => Some(*negative),
             (_, Some(side)) => {
                 let turning = side.rate.norm() * disc.radii[1] * (1.0 + 1e-9);
                 let error = 16.0 * (side.travel.norm() * f64::EPSILON + slack * side.rate.norm());
@@ -188,7 +188,7 @@ impl Resting<'_> {
                 return;
             }
             let sign = |n: usize| match (&self.sides[n], &posed[n]) {
-                (Side::Moving(_), Some(side)) => {
+                (RestingSide::Moving(_), Some(side)) => {
                     let f = side.along(&arm);
                     // Without a turn it is a product.
                     let doubt = (error + 16.0 * slack) * side.rate.norm()
@@ -199,7 +199,7 @@ impl Resting<'_> {
                         };
                     (f * disc.up < 0.0, side.rate.norm() == 0.0 || f.abs() > doubt)
                 }
-                (Side::Beyond(negative), _) => (*negative, true),
+                (RestingSide::Beyond(negative), _) => (*negative, true),
                 _ => (false, false),
             };
             let signs = [sign(0), sign(1)];

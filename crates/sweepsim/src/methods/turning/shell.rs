@@ -60,7 +60,7 @@ pub(super) enum Falls {
 
 /// A point of a sheet.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
+pub(super) struct ShellPoint {
     pub height: f64,
     /// Of any length.
     pub normal: Vector3<f64>,
@@ -132,7 +132,7 @@ pub(super) trait Shell {
     fn pace(&self, limits: &Self::Limits, at: &Self::Posed, meeting: &Meeting, slope: f64) -> [f64; 2];
 
     /// The point of a sheet where it turns, a time `step` later, with the derivative of the height now.
-    fn spot(&self, at: &Self::Posed, meeting: &Meeting, to: (usize, f64, f64), slack: f64) -> Spot;
+    fn point(&self, at: &Self::Posed, meeting: &Meeting, to: (usize, f64, f64), slack: f64) -> ShellPoint;
 
     fn ends(&self) -> Ends;
 

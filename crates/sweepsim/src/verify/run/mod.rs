@@ -4,7 +4,7 @@ mod courses;
 mod removal;
 
 use crate::error::SweepError;
-use crate::verify::depth::{Side, greatest};
+use crate::verify::depth::{SurfaceSide, greatest};
 use crate::verify::driver::{Solids, Work};
 use crate::verify::finding::{Finding, FindingKind};
 use crate::verify::lines::Lines;
@@ -229,7 +229,7 @@ impl Work<'_> {
         let (i, j) = grid.place(line as usize);
         let middle = 0.5 * (heights[0] + heights[1]);
         let depth = match (kind, self.target) {
-            (FindingKind::Gouge, Some(target)) => greatest(&touch.all, grid, target.distance(), Side::Inside).0,
+            (FindingKind::Gouge, Some(target)) => greatest(&touch.all, grid, target.distance(), SurfaceSide::Inside).0,
             _ => touch.all.longest().map_or(0.0, |(_, [lower, upper])| upper - lower),
         };
         let finding = Finding {

@@ -1,7 +1,7 @@
 //! A cone or a cylinder along an arc about its axis: the cones with the radius `R ± ρ` about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, Orbit, STILL, Sector, Spot, View, between, length, products, within};
+use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products, within};
 use crate::cutter::outline::Piece;
 use sweepsim_dexel::Source;
 
@@ -158,7 +158,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         // Along the dexels.
         let up = lean[1] * m + lean[0] * cone.side * n * sign * x / rho;
         let falls = (n > 0.0) != cone.beyond;
-        let spot = Spot {
+        let point = EnvelopePoint {
             w,
             error,
             tip: tip(w),
@@ -166,6 +166,6 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             normal: [cone.side * n, 0.0, m],
             jump: if (up > 0.0) == falls { -1 } else { 1 },
         };
-        self.settle(view, sector, &spot)
+        self.settle(view, sector, &point)
     }
 }

@@ -161,7 +161,7 @@ struct Sector {
 }
 
 /// Where a line meets the envelope.
-struct Spot {
+struct EnvelopePoint {
     /// The parameter of the line,
     w: f64,
     /// and its error.
@@ -327,8 +327,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     }
 
     /// A crossing, if the tip comes there in this part of the arc.
-    fn settle(&mut self, view: &View, sector: Sector, spot: &Spot) -> Result<(), Open> {
-        let share = match self.place(spot.tip, spot.askew) {
+    fn settle(&mut self, view: &View, sector: Sector, point: &EnvelopePoint) -> Result<(), Open> {
+        let share = match self.place(point.tip, point.askew) {
             Place::Outside => return Ok(()),
             Place::Near => return Err(Open),
             Place::Inside(share) => share,
@@ -337,19 +337,19 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             return Ok(());
         }
         // NaN is in doubt.
-        if !(spot.error * self.along.height.abs() <= 0.5 * self.height_tolerance) {
+        if !(point.error * self.along.height.abs() <= 0.5 * self.height_tolerance) {
             return Err(Open);
         }
-        let far = length(spot.tip[0], spot.tip[1]);
-        let [x, y] = spot.tip.map(|c| c / far);
-        let [radial, level, along] = spot.normal;
+        let far = length(point.tip[0], point.tip[1]);
+        let [x, y] = point.tip.map(|c| c / far);
+        let [radial, level, along] = point.normal;
         let [up, right, axis] = self.arc.axes();
         let normal: Vector3<f64> = up * (x * radial - y * level) + right * (y * radial + x * level) + axis * along;
         let (i, j) = view.place;
         let line = self.lines.lines.line(i, j);
-        let height = view.height + spot.w * self.along.height;
+        let height = view.height + point.w * self.along.height;
         self.lines
-            .crossing(line, height, spot.jump, unit(normal), (self.source)(share));
+            .crossing(line, height, point.jump, unit(normal), (self.source)(share));
         Ok(())
     }
 }

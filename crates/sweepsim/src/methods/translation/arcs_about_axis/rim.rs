@@ -1,7 +1,7 @@
 //! A sharp edge along an arc about its axis, which stays in its plane but for the rise.
 
 use super::roots::Open;
-use super::{AXIS, Along, Orbit, Place, Sector, Spot, View, length, products};
+use super::{AXIS, Along, EnvelopePoint, Orbit, Place, Sector, View, length, products};
 use crate::cutter::outline::Rim;
 use sweepsim_dexel::Source;
 
@@ -174,7 +174,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             Some((up, _)) => [0.0, 0.0, up],
             None => [radial * out, radial * ahead * self.arc.side(), along],
         };
-        let spot = Spot {
+        let point = EnvelopePoint {
             w,
             error: height_error,
             tip,
@@ -182,6 +182,6 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             normal,
             jump: if a < 0.0 { -orientation } else { orientation },
         };
-        self.settle(view, sector, &spot)
+        self.settle(view, sector, &point)
     }
 }

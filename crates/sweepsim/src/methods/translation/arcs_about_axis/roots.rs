@@ -20,7 +20,7 @@ pub(super) struct Arch<F> {
 }
 
 #[derive(Clone, Copy)]
-struct Point {
+struct ArchPoint {
     x: f64,
     value: f64,
     slope: f64,
@@ -28,10 +28,10 @@ struct Point {
 
 impl<F: Fn(f64) -> [f64; 2]> Arch<F> {
     /// As of a convex function.
-    fn at(&self, x: f64) -> Point {
+    fn at(&self, x: f64) -> ArchPoint {
         let [value, slope] = (self.function)(x);
         let sign = if self.convex { 1.0 } else { -1.0 };
-        Point {
+        ArchPoint {
             x,
             value: sign * value,
             slope: sign * slope,
@@ -82,7 +82,7 @@ impl<F: Fn(f64) -> [f64; 2]> Arch<F> {
     }
 
     /// The zero between a point where the function is positive and one where it is negative.
-    fn zero(&self, mut above: Point, mut below: Point) -> f64 {
+    fn zero(&self, mut above: ArchPoint, mut below: ArchPoint) -> f64 {
         let mut x = below.x + (above.x - below.x) * (below.value / (below.value - above.value));
         for _ in 0..STEPS {
             let at = self.at(x);

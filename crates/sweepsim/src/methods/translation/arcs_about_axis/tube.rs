@@ -1,7 +1,7 @@
 //! A ball or a torus along an arc about its axis: tubes about circles about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, Orbit, STILL, Sector, Spot, View, between, length, products, within};
+use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products, within};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim_dexel::Source;
@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-9;
 
 /// What of a tube belongs to the tool.
 #[derive(Clone, Copy)]
-enum Part {
+enum TubePart {
     /// Of a ball, heights from its centre.
     Heights([f64; 2]),
     /// Angles about the circle of centres: the middle, and how far they reach; and whether the tube's normal is parallel to the axis somewhere.
@@ -28,7 +28,7 @@ struct Tube {
     out: f64,
     side: f64,
     beyond: bool,
-    part: Part,
+    part: TubePart,
 }
 
 impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
@@ -69,10 +69,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             return None;
         }
         let part = match piece.ball() {
-            Some(ball) => Part::Heights(ball.ends),
+            Some(ball) => TubePart::Heights(ball.ends),
             // A hollow ball.
             None if ball => return None,
-            None => Part::Angles([0.5 * (angles[0] + angles[1]), 0.5 * (angles[1] - angles[0])], flat),
+            None => TubePart::Angles([0.5 * (angles[0] + angles[1]), 0.5 * (angles[1] - angles[0])], flat),
         };
         let range = super::cosines(angles).map(|cosine| centre + radius * cosine);
         let radii = if ball { [0.0, range[1].max(0.0)] } else { range };
@@ -236,8 +236,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let (out, up) = (sign * (rho - tube.centres), view.z + along * w - lift - tube.height);
         let off = 4.0 * (error * (across.abs() + along.abs()) + self.coarse);
         let inside = match tube.part {
-            Part::Heights(ends) => within(up, ends, off),
-            Part::Angles([middle, half], flat) => {
+            TubePart::Heights(ends) => within(up, ends, off),
+            TubePart::Angles([middle, half], flat) => {
                 let (s, c) = middle.sin_cos();
                 let (a, b) = (tube.side * out, up);
                 let apart = (b * c - a * s).atan2(a * c + b * s).abs();
@@ -258,13 +258,13 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let normal = [tube.out * out / r, tube.out * up / r];
         // Of the meridian, `n_ρ`: that of a ball is never negative.
         let inwards = match tube.part {
-            Part::Heights(_) => false,
-            Part::Angles(..) => tube.side * normal[0] < 0.0,
+            TubePart::Heights(_) => false,
+            TubePart::Angles(..) => tube.side * normal[0] < 0.0,
         };
         let lean = self.arc.tilt;
         let rises = lean[1] * normal[1] + lean[0] * normal[0] * sign * x / rho;
         let falls = inwards == tube.beyond;
-        let spot = Spot {
+        let point = EnvelopePoint {
             w,
             error,
             tip: tip(w),
@@ -272,6 +272,6 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             normal: [normal[0], 0.0, normal[1]],
             jump: if (rises > 0.0) == falls { -1 } else { 1 },
         };
-        self.settle(view, sector, &spot)
+        self.settle(view, sector, &point)
     }
 }

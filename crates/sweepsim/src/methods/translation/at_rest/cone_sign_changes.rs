@@ -1,6 +1,6 @@
 //! Where on a cone the sign of `g` is not the same before and after a placement: between a few azimuths.
 
-use super::leaning::Side;
+use super::leaning::AtRestSide;
 use std::f64::consts::PI;
 
 /// Wedges are wider than they need to be by this angle on both sides.
@@ -71,17 +71,19 @@ impl Wedge {
 }
 
 /// The azimuths at which the sign of `g` on a line of the meridian changes, or may change.
-pub(super) fn wedges(normal: [f64; 2], sides: &[Side; 2]) -> Vec<Wedge> {
+pub(super) fn wedges(normal: [f64; 2], sides: &[AtRestSide; 2]) -> Vec<Wedge> {
     wedges_between([normal; 2], sides)
 }
 
 /// The same on an arc of the meridian between two normals, which are on one side of the axis and not along it.
-pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[Side; 2]) -> Vec<Wedge> {
+pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[AtRestSide; 2]) -> Vec<Wedge> {
     let [[n, m], last] = normals;
     let mut borders: Vec<f64> = Vec::with_capacity(10);
     let mut ranges: Vec<[f64; 2]> = Vec::with_capacity(12);
     for side in sides {
-        let Side::Along([da, db, dc]) = *side else { continue };
+        let AtRestSide::Along([da, db, dc]) = *side else {
+            continue;
+        };
         // g = size cos(φ − towards) + offset
         let ratios = normals.map(|[n, m]| {
             let (size, offset) = (n.abs() * da.hypot(db), m * dc);
@@ -113,8 +115,8 @@ pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[Side; 2]) -> Vec<W
     }
     let negative = |angle: f64| {
         let [before, after] = [0, 1].map(|k| match sides[k] {
-            Side::Beyond(negative) => negative,
-            Side::Along([da, db, dc]) => n * (da * angle.cos() + db * angle.sin()) + m * dc < 0.0,
+            AtRestSide::Beyond(negative) => negative,
+            AtRestSide::Along([da, db, dc]) => n * (da * angle.cos() + db * angle.sin()) + m * dc < 0.0,
         });
         before != after
     };
@@ -169,23 +171,23 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::TestCaseResult;
 
-    fn side() -> impl Strategy<Value = Side> {
+    fn side() -> impl Strategy<Value = AtRestSide> {
         let moving = ([-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], -12..1i32);
         prop_oneof![
             4 => moving.prop_map(|([a, b, c], size)| {
                 let size = 10f64.powi(size);
-                Side::Along([a * size, b * size, c])
+                AtRestSide::Along([a * size, b * size, c])
             }),
-            1 => any::<bool>().prop_map(Side::Beyond),
+            1 => any::<bool>().prop_map(AtRestSide::Beyond),
         ]
     }
 
     /// At most one wedge holds an azimuth, and one does where the signs differ.
-    fn check(wedges: &[Wedge], [n, m]: [f64; 2], sides: &[Side; 2], azimuth: f64) -> TestCaseResult {
+    fn check(wedges: &[Wedge], [n, m]: [f64; 2], sides: &[AtRestSide; 2], azimuth: f64) -> TestCaseResult {
         let (sine, cosine) = azimuth.sin_cos();
         let negative = sides.map(|side| match side {
-            Side::Beyond(negative) => negative,
-            Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
+            AtRestSide::Beyond(negative) => negative,
+            AtRestSide::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
         });
         let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
         prop_assert!(held <= 1, "{wedges:?} {azimuth}");
@@ -201,7 +203,7 @@ mod tests {
             let wedges = wedges([n, m], &sides);
             // Some where one of the signs changes.
             let border = match sides[0] {
-                Side::Along([a, b, c]) if near => {
+                AtRestSide::Along([a, b, c]) if near => {
                     let ratio = -m * c / (n.abs() * a.hypot(b));
                     Some((n * b).atan2(n * a) + ratio.clamp(-1.0, 1.0).acos() + off)
                 }

@@ -1,7 +1,7 @@
 //! Where a dexel line meets a cone or a cylinder of a leaning tool: see [`leaning`](super::leaning).
 
 use super::cone_sign_changes::Wedge;
-use super::leaning::{PARALLEL, Point, Points, within};
+use super::leaning::{LeaningPoint, PARALLEL, Points, within};
 
 /// Nearer to the axis than this, azimuths say nothing.
 const APEX: f64 = 1e-6;
@@ -112,7 +112,7 @@ impl Cone {
             }
             let rise = q + k * a;
             let height = rise / s;
-            Some(Point {
+            Some(LeaningPoint {
                 height: a * s + height * k,
                 normal: [n * a / rho, n * b / rho, 0.0],
                 error: [error / rho, 0.0],
@@ -122,7 +122,7 @@ impl Cone {
     }
 
     /// `n_z`.
-    fn rises(&self, point: &Point) -> f64 {
+    fn rises(&self, point: &LeaningPoint) -> f64 {
         self.tilt[0] * point.normal[0] + self.tilt[1] * point.normal[2]
     }
 
@@ -133,7 +133,7 @@ impl Cone {
         (first, apart): (f64, f64),
         wedge: Option<&Wedge>,
         tangent: &mut bool,
-    ) -> Option<Point> {
+    ) -> Option<LeaningPoint> {
         let ([n, m], [s, k]) = (self.normal, self.tilt);
         let mut a = first;
         let mut step = 0.0;
@@ -174,7 +174,7 @@ impl Cone {
         if wedge.is_some_and(|wedge| !wedge.holds(a / rho, b / rho)) {
             return None;
         }
-        Some(Point {
+        Some(LeaningPoint {
             height: a * s + height * k,
             normal: [n * a / rho, n * b / rho, m],
             error: [error / rho, 0.0],

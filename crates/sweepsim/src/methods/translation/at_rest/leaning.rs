@@ -30,7 +30,7 @@ const FLAT: f64 = 1e-3;
 
 /// A side of the placement: the move there in the tool's coordinates, or whether the tool counts as moving inwards beyond an end.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Side {
+pub(super) enum AtRestSide {
     Along([f64; 3]),
     Beyond(bool),
 }
@@ -54,12 +54,12 @@ pub(crate) fn leaning(
         floor: Floor { tip, ahead, slack },
         tilt: [s, k],
         sides: sides.map(|side| match side {
-            Neighbour::Beyond(negative) => Side::Beyond(negative),
+            Neighbour::Beyond(negative) => AtRestSide::Beyond(negative),
             Neighbour::Along([x, y, z]) => {
                 let [q, p] = [ahead[0] * x + ahead[1] * y, ahead[0] * y - ahead[1] * x];
                 // Along the axis as the headings of both moves have it.
                 let along = Heading::along_axis(turn, [x, y, z]);
-                Side::Along([s * z - k * q, p, along])
+                AtRestSide::Along([s * z - k * q, p, along])
             }
         }),
         lines,
@@ -76,13 +76,13 @@ pub(super) struct Leaning<'a, 'b> {
     pub floor: Floor,
     /// Sine and cosine of the angle between the axis and the dexels.
     pub tilt: [f64; 2],
-    pub sides: [Side; 2],
+    pub sides: [AtRestSide; 2],
     lines: &'a mut Collector<'b>,
     source: Source,
 }
 
 /// Where a line meets a surface, in the tool's coordinates.
-pub(super) struct Point {
+pub(super) struct LeaningPoint {
     /// Above the tip, along the dexel.
     pub height: f64,
     /// The normal, of any length.
@@ -106,7 +106,7 @@ pub(super) fn within(value: f64, [low, high]: [f64; 2], error: f64) -> Option<bo
 
 /// The points of a line: their number is not certain for a tangent.
 pub(super) enum Points {
-    Two([Option<Point>; 2]),
+    Two([Option<LeaningPoint>; 2]),
     Tangent,
 }
 
@@ -145,7 +145,7 @@ impl Leaning<'_, '_> {
                     let rho = (a * a + b * b).sqrt();
                     // The centre is no end.
                     let inside = within(rho, [if radii[0] == 0.0 { -1.0 } else { radii[0] }, radii[1]], error);
-                    let point = Point {
+                    let point = LeaningPoint {
                         height: a * s + from[1] * k,
                         normal: [0.0, 0.0, up],
                         error: [0.0; 2],
@@ -201,7 +201,7 @@ impl Leaning<'_, '_> {
                     let error = 8.0 * slack * radius / half;
                     Points::Two([-half, half].map(|rise| {
                         let [a, along] = [s * rise - k * across, s * across + k * rise];
-                        Some(Point {
+                        Some(LeaningPoint {
                             height: k * middle + rise,
                             normal: [a, b, along].map(|c| out * c / radius),
                             error: [error / radius; 2],
@@ -219,8 +219,8 @@ impl Leaning<'_, '_> {
     /// Whether `g` is negative on one side, if that is certain.
     fn negative(&self, side: usize, normal: [f64; 3], [across, along]: [f64; 2]) -> Option<bool> {
         let d = match self.sides[side] {
-            Side::Beyond(negative) => return Some(negative),
-            Side::Along(d) => d,
+            AtRestSide::Beyond(negative) => return Some(negative),
+            AtRestSide::Along(d) => d,
         };
         let g = normal[0] * d[0] + normal[1] * d[1] + normal[2] * d[2];
         // With a normal along the axis, g is a product.
@@ -261,7 +261,7 @@ impl Leaning<'_, '_> {
     }
 
     #[inline]
-    fn point(&mut self, point: &Point, (i, j): (usize, usize)) {
+    fn point(&mut self, point: &LeaningPoint, (i, j): (usize, usize)) {
         if point.inside == Some(false) {
             return;
         }

@@ -1,8 +1,8 @@
 //! A torus at rest whose axis is perpendicular to the dexels: a line is at one height along the axis, where the torus has a circle or two.
 
-use super::super::stretches::{Part, Stretch};
+use super::super::stretches::{HeightRange, Stretch};
 use super::cone_sign_changes::{Wedge, wedges_between};
-use super::leaning::{Leaning, Point, Points, within};
+use super::leaning::{Leaning, LeaningPoint, Points, within};
 use crate::cutter::outline::Piece;
 
 /// A vanishing distance is beyond doubt from so many times its error on.
@@ -30,7 +30,7 @@ impl Leaning<'_, '_> {
     }
 
     /// A part of a stretch, within a wedge if there is one, which may be one of many.
-    fn rings(&mut self, stretch: &Stretch, part: &Part, wedge: Option<(&Wedge, bool)>) {
+    fn rings(&mut self, stretch: &Stretch, part: &HeightRange, wedge: Option<(&Wedge, bool)>) {
         let ([s, _], slack) = (self.tilt, self.floor.slack);
         let reach = stretch.radii[1];
         let across = wedge.map_or([-reach, reach], |(wedge, _)| wedge.across(stretch.radii));
@@ -61,7 +61,7 @@ impl Leaning<'_, '_> {
             let error = [2.0 * doubt / (half * rho), 4.0 * slack * ring.turn];
             Points::Two([-half, half].map(|a| {
                 let held = wedge.is_none_or(|(wedge, many)| !many || wedge.holds(a / rho, b / rho));
-                held.then_some(Point {
+                held.then_some(LeaningPoint {
                     height: a * s,
                     normal: [n * a / rho, n * b / rho, m],
                     error,

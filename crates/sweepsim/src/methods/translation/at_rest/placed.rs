@@ -5,7 +5,7 @@ use super::super::curves::stands;
 use super::super::rows::numbers;
 use super::super::{Ceiling, Collector};
 use super::ball_sign_changes::Lune;
-use super::radial::{Hypot, Radial, Spot, Stretch};
+use super::radial::{Hypot, Radial, Stretch, StretchPoint};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use crate::time::path_parts::PathPart;
@@ -244,8 +244,8 @@ impl Placed<'_, '_> {
             if rho < inner - slack || rho > outer + slack || stretch.same([x, y], rho) {
                 continue;
             }
-            let spot = stretch.at(rho);
-            let (certain, change) = self.change(&spot, [x, y], rho, slack);
+            let point = stretch.at(rho);
+            let (certain, change) = self.change(&point, [x, y], rho, slack);
             if certain && change == 0 {
                 continue;
             }
@@ -257,19 +257,19 @@ impl Placed<'_, '_> {
                 self.lines.open(line);
                 continue;
             }
-            let [n_rho, n_zeta] = spot.normal;
+            let [n_rho, n_zeta] = point.normal;
             let jump = if n_zeta > 0.0 { -change } else { change };
             let normal = nalgebra::Vector3::new(n_rho * x / rho, n_rho * y / rho, n_zeta);
             self.lines
-                .crossing(line, tz + spot.height, jump, unit(normal), self.source);
+                .crossing(line, tz + point.height, jump, unit(normal), self.source);
         }
         *next = (*next).max(high + 1);
     }
 
     /// Whether the signs of `g` before and after are certain, and the difference `[g₊ < 0] − [g₋ < 0]`.
     #[inline]
-    fn change(&self, spot: &Spot, [x, y]: [f64; 2], rho: f64, slack: f64) -> (bool, i8) {
-        let [n_rho, n_zeta] = spot.normal;
+    fn change(&self, point: &StretchPoint, [x, y]: [f64; 2], rho: f64, slack: f64) -> (bool, i8) {
+        let [n_rho, n_zeta] = point.normal;
         let ratio = if rho > 0.0 { n_rho / rho } else { 0.0 };
         let mut certain = true;
         let sign = |side: &Neighbour| match side {
@@ -278,9 +278,9 @@ impl Placed<'_, '_> {
                 let out = ratio * (x * dx + y * dy);
                 let g = out + n_zeta * dz;
                 // As the normal turns, its part across the axis changes with the other one: hardly where a wall is widest.
-                let turned = spot.bend * n_zeta.abs();
+                let turned = point.bend * n_zeta.abs();
                 let error = (dx.abs() + dy.abs()) * (slack * (ratio.abs() + turned) + 8.0 * f64::EPSILON)
-                    + dz.abs() * (slack * spot.bend + 8.0 * f64::EPSILON);
+                    + dz.abs() * (slack * point.bend + 8.0 * f64::EPSILON);
                 let sure = n_rho == 0.0 || g.abs() > error;
                 (sure, i8::from(g < 0.0))
             }

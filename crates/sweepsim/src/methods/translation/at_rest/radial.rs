@@ -74,13 +74,13 @@ impl<'a> Stretch<'a> {
     }
 
     #[inline]
-    pub fn at(&self, rho: f64) -> Spot {
+    pub fn at(&self, rho: f64) -> StretchPoint {
         self.radial.at(rho, [self.inner.max(0.0), self.outer])
     }
 }
 
 /// A point of a stretch.
-pub(super) struct Spot {
+pub(super) struct StretchPoint {
     pub height: f64,
     pub normal: [f64; 2],
     /// How fast the normal turns with the radius.
@@ -89,9 +89,9 @@ pub(super) struct Spot {
 
 impl Radial {
     #[inline]
-    fn at(&self, rho: f64, [inner, outer]: [f64; 2]) -> Spot {
+    fn at(&self, rho: f64, [inner, outer]: [f64; 2]) -> StretchPoint {
         match *self {
-            Self::Line { height, slope, normal } => Spot {
+            Self::Line { height, slope, normal } => StretchPoint {
                 height: height + (rho.clamp(inner, outer) - inner) * slope,
                 normal,
                 bend: 0.0,
@@ -104,7 +104,7 @@ impl Radial {
             } => {
                 let e = ((rho - centre[0]) / radius).clamp(-1.0, 1.0);
                 let f = half * ((1.0 - e) * (1.0 + e)).sqrt();
-                Spot {
+                StretchPoint {
                     height: centre[1] + radius * f,
                     normal: [out * e, out * f],
                     bend: 1.0 / (radius * f.abs()),

@@ -4,7 +4,7 @@ use super::Local;
 
 /// A point of a graph.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct GraphPoint {
     pub q: f64,
     pub z: f64,
     /// `dq/dp`.
@@ -19,10 +19,10 @@ pub(crate) struct Spot {
 
 /// A point of a curve that turns about a line beside the tool, at a distance from that line.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
+pub(crate) struct TurnedPoint {
     /// How far it is from the line, seen along the arm to the tip.
     pub out: f64,
-    pub spot: Spot,
+    pub point: GraphPoint,
     /// How far the angle may be off at which it is seen from the line.
     pub error: f64,
 }
@@ -38,7 +38,7 @@ pub(crate) struct End {
 /// A stretch of a curve fixed to the tool over which `p` is strictly monotone.
 pub(crate) trait Graph {
     /// The point at `p`, within the [span](Self::span).
-    fn at(&self, p: f64) -> Spot;
+    fn at(&self, p: f64) -> GraphPoint;
 
     /// The range of `p`.
     fn span(&self) -> [f64; 2];
@@ -72,14 +72,14 @@ pub(crate) trait Graph {
     fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]);
 
     /// Heights and normals at many values, between two of which all jumps are the same, and not 0.
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]);
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]);
 }
 
 /// What a crossing has of a graph.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Point {
+pub(crate) struct GraphCrossing {
     pub z: f64,
-    /// As that of a [`Spot`].
+    /// As that of a [`GraphPoint`].
     pub normal: Local,
 }
 

@@ -11,7 +11,7 @@ pub(crate) mod slant;
 pub(crate) mod torus;
 mod torus_about;
 
-pub(crate) use graph::{Graph, Point, Seen, Turned};
+pub(crate) use graph::{Graph, GraphCrossing, Turned, TurnedPoint};
 pub(crate) use heading::{Heading, SHORTEST, slack, stands};
 pub(crate) use parabola::Parabola;
 pub(crate) use ring_about::Beside;

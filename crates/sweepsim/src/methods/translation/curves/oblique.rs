@@ -21,7 +21,7 @@
 //! Where a move is nearly perpendicular to the axis, `h` turns fast while `δ` is as small as `κ`: there its azimuth `ψ`, `tan δ = |κ| tan ψ`, takes the place of `δ`.
 
 use super::Local;
-use super::graph::{Graph, Point, Spot};
+use super::graph::{Graph, GraphCrossing, GraphPoint};
 use super::torus::STEPS;
 
 /// A step of Newton's method after which `p` is accurate to rounding: its second derivative is below the inverse of the square root of this.
@@ -249,12 +249,12 @@ fn range(x: f64, y: f64, ends: [[f64; 2]; 2]) -> [f64; 2] {
 }
 
 impl Graph for Oblique {
-    fn at(&self, p: f64) -> Spot {
+    fn at(&self, p: f64) -> GraphPoint {
         let found = self.found(p);
         let certain = found.is_some();
         let site = found.unwrap_or_else(|| self.site(self.ends[0]));
         let [q, _, z] = self.place(&site);
-        Spot {
+        GraphPoint {
             q,
             z,
             slope: self.slant(&site),
@@ -343,10 +343,10 @@ impl Graph for Oblique {
         }
     }
 
-    fn many(&self, _: &[f64], own: &[f64], points: &mut [Point]) {
+    fn many(&self, _: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
         for (s, point) in own.iter().zip(points) {
             let site = self.site(*s);
-            *point = Point {
+            *point = GraphCrossing {
                 z: self.place(&site)[2],
                 normal: self.normal(&site).map(|c| self.out * c),
             };

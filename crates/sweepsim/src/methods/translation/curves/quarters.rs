@@ -258,9 +258,9 @@ mod tests {
                     prop_assert!(place[0] >= reach[0] - 1e-9 && place[0] <= reach[1] + 1e-9);
                     last = place[1];
                     // And back.
-                    let spot = stretch.at(place[1].clamp(low, high));
-                    prop_assert!(spot.certain);
-                    prop_assert!((spot.q - place[0]).abs() < 1e-9 * (1.0 + spot.slope.abs()) + 1e-6, "{spot:?} {place}");
+                    let point = stretch.at(place[1].clamp(low, high));
+                    prop_assert!(point.certain);
+                    prop_assert!((point.q - place[0]).abs() < 1e-9 * (1.0 + point.slope.abs()) + 1e-6, "{point:?} {place}");
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
-use super::graph::{End, Graph, Point, Spot, Turned};
+use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
 use super::{Heading, Local, along, dot};
 use crate::cutter::outline::Rim;
 use std::f64::consts::PI;
@@ -260,7 +260,7 @@ impl Ring {
 impl Ring {
     /// The point at an angle, which may be off by `error`.
     #[inline]
-    pub(super) fn spot(&self, [c, s]: [f64; 2], error: f64) -> Spot {
+    pub(super) fn point(&self, [c, s]: [f64; 2], error: f64) -> GraphPoint {
         let arm = along(&self.first.map(|x| c * x), s, &self.second);
         let slope = self.slope([c, s]);
         let (jump, normal, certain) = match &self.role {
@@ -275,7 +275,7 @@ impl Ring {
                 (jump, along(&arm.map(|x| x * n / radius), m, axis), certain)
             }
         };
-        Spot {
+        GraphPoint {
             q: self.centre[0] + arm[0],
             z: self.centre[2] + arm[2],
             slope,
@@ -288,9 +288,9 @@ impl Ring {
 
 impl Graph for Ring {
     #[inline]
-    fn at(&self, p: f64) -> Spot {
+    fn at(&self, p: f64) -> GraphPoint {
         let turn = self.turn(p);
-        self.spot(turn, self.blur(turn[1]))
+        self.point(turn, self.blur(turn[1]))
     }
 
     fn span(&self) -> [f64; 2] {
@@ -341,7 +341,7 @@ impl Graph for Ring {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]) {
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
         let values = p.iter().zip(own);
         let turn = |(p, s): (&f64, &f64)| [((p - self.centre[1]) / self.width).clamp(-1.0, 1.0), *s];
         match &self.role {
@@ -349,7 +349,7 @@ impl Graph for Ring {
                 for (value, point) in values.zip(points) {
                     let [c, s] = turn(value);
                     let arm = along(&self.first.map(|x| c * x), s, &self.second);
-                    *point = Point {
+                    *point = GraphCrossing {
                         z: self.centre[2] + arm[2],
                         normal: arm.map(|x| out * x),
                     };
@@ -369,7 +369,7 @@ impl Graph for Ring {
                     let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
                     let [a, b] = rates.map(|[ahead, up]| (ahead * cosine + up).abs());
                     let [n, m] = [0, 1].map(|k| normals[0][k] * b + normals[1][k] * a);
-                    *point = Point {
+                    *point = GraphCrossing {
                         z: self.centre[2] + arm[2],
                         normal: along(&arm.map(|x| x * n / radius), m, axis),
                     };

@@ -3,7 +3,7 @@
 //! With the distance `R` of the line from the tip, `s` is a sum of two large numbers and a difference of them that is as large: next to the line it has
 //! no digits left if `R` is the circle's radius. Here all follows from the difference of the radii instead.
 
-use super::graph::{Seen, Spot};
+use super::graph::{GraphPoint, TurnedPoint};
 use super::ring::{Ring, Role};
 
 /// What rounding may move a point by, in the rounding errors of a coordinate.
@@ -22,18 +22,18 @@ impl Beside {
     /// A point and the direction of the curve there, both outwards and ahead.
     ///
     /// If the curve is off by some distance across itself, or a line is, the angle is off by this, divided by the part of the direction towards the line, and by the distance from it.
-    pub(super) fn seen(&self, out: f64, spot: Spot, [outwards, ahead]: [f64; 2]) -> Seen {
-        Seen {
+    pub(super) fn seen(&self, out: f64, point: GraphPoint, [outwards, ahead]: [f64; 2]) -> TurnedPoint {
+        TurnedPoint {
             out,
-            error: OFF * self.slack * outwards.hypot(ahead) / (out * outwards + spot.q * ahead).abs(),
-            spot,
+            error: OFF * self.slack * outwards.hypot(ahead) / (out * outwards + point.q * ahead).abs(),
+            point,
         }
     }
 }
 
 impl Ring {
     /// The point at a squared distance from a line, before or beyond the place nearest to it. It is nearer than the axis of an upright tool.
-    pub(crate) fn near(&self, beside: &Beside, s: f64, beyond: bool) -> Seen {
+    pub(crate) fn near(&self, beside: &Beside, s: f64, beyond: bool) -> TurnedPoint {
         let Beside { radius, side, slack } = *beside;
         let apart = radius - self.width;
         match self.role {
@@ -44,8 +44,8 @@ impl Ring {
                 let turn = [side * (radius - out) / self.width, self.half * ahead / self.width];
                 // The circle's direction is perpendicular to its radius.
                 let error = OFF * slack * distance / (radius * ahead) + 16.0 * f64::EPSILON;
-                let spot = self.spot(turn, error);
-                beside.seen(out, spot, [-spot.q, out - radius])
+                let point = self.point(turn, error);
+                beside.seen(out, point, [-point.q, out - radius])
             }
             Role::Ball { .. } => {
                 // out = R − r + r u, q = r k sin θ, with u = 1 − cos θ: a quadratic equation for u.
@@ -66,9 +66,9 @@ impl Ring {
                 };
                 let u = u.clamp(0.0, 1.0);
                 let [c, n] = [1.0 - u, self.half * (u * (2.0 - u)).sqrt()];
-                let spot = self.spot([side * c, n], 0.0);
+                let point = self.point([side * c, n], 0.0);
                 let way = [self.width * n, self.second[0] * c];
-                beside.seen(apart + self.width * u, spot, way)
+                beside.seen(apart + self.width * u, point, way)
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The grazing curve of a cone or cylinder: two straight lines.
 
-use super::graph::{End, Graph, Point, Spot, Turned};
+use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
 use super::{Heading, Local};
 
 /// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
@@ -64,9 +64,9 @@ impl Slant {
 }
 
 impl Graph for Slant {
-    fn at(&self, p: f64) -> Spot {
+    fn at(&self, p: f64) -> GraphPoint {
         let [q, z] = self.place(p);
-        Spot {
+        GraphPoint {
             q,
             z,
             slope: self.slope,
@@ -103,9 +103,9 @@ impl Graph for Slant {
         }
     }
 
-    fn many(&self, p: &[f64], _: &[f64], points: &mut [Point]) {
+    fn many(&self, p: &[f64], _: &[f64], points: &mut [GraphCrossing]) {
         for (p, point) in p.iter().zip(points) {
-            *point = Point {
+            *point = GraphCrossing {
                 z: self.place(*p)[1],
                 normal: self.normal,
             };

@@ -9,7 +9,7 @@
 //!
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
-use super::graph::{End, Graph, Point, Spot, Turned};
+use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
 use super::{Heading, middle};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -244,14 +244,14 @@ impl Torus {
 impl Torus {
     /// The point with the radius `ρ` and the normal `(|e|, f)` of the meridian, and the sine `w`.
     #[inline]
-    pub(super) fn spot(&self, rho: f64, [e, f]: [f64; 2], w: f64) -> Spot {
+    pub(super) fn point(&self, rho: f64, [e, f]: [f64; 2], w: f64) -> GraphPoint {
         let (sign, m) = (self.signs[0], self.slope);
         let cosine = -m * f / (sign * e);
         let cube = self.radius * sign * e * e * e;
         let [offset, square] = [self.centre[0], m * m];
         // The quotient of both derivatives.
         let slope = m * sign * (cube + offset) * e * w / (f * (cube * (1.0 + square) + offset * square));
-        Spot {
+        GraphPoint {
             q: rho * cosine,
             z: self.centre[1] + self.radius * f,
             slope: self.side * slope,
@@ -268,13 +268,13 @@ impl Torus {
 
 impl Graph for Torus {
     #[inline]
-    fn at(&self, p: f64) -> Spot {
+    fn at(&self, p: f64) -> GraphPoint {
         let found = self.invert(p.abs());
         let e = found.unwrap_or(self.ends[0]);
         let [rho, f] = self.meridian(e);
-        Spot {
+        GraphPoint {
             certain: found.is_some(),
-            ..self.spot(rho, [e, f], p.abs() / rho)
+            ..self.point(rho, [e, f], p.abs() / rho)
         }
     }
 
@@ -324,12 +324,12 @@ impl Graph for Torus {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]) {
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
         let sign = self.out * self.signs[0];
         for ((p, e), point) in p.iter().zip(own).zip(points) {
             let [rho, f] = self.meridian(*e);
             let across = sign * e;
-            *point = Point {
+            *point = GraphCrossing {
                 z: self.centre[1] + self.radius * f,
                 normal: [-self.out * self.slope * f, across * (p / rho), self.out * f],
             };

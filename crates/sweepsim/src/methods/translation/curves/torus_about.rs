@@ -1,6 +1,6 @@
 //! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
 
-use super::graph::Seen;
+use super::graph::TurnedPoint;
 use super::middle;
 use super::ring_about::Beside;
 use super::torus::{STEPS, Torus};
@@ -78,7 +78,7 @@ impl Torus {
     }
 
     /// The point at a squared distance from a line, over a range of `|e|` where it is monotone, if it is nearer to the line than the axis is, and to the widest place.
-    pub(crate) fn near(&self, [low, high]: [f64; 2], beside: &Beside, s: f64) -> Option<Seen> {
+    pub(crate) fn near(&self, [low, high]: [f64; 2], beside: &Beside, s: f64) -> Option<TurnedPoint> {
         let low = low.max(WIDE);
         if self.side * beside.side < 0.0 || !(low < high) {
             return None;
@@ -124,9 +124,9 @@ impl Torus {
             let next = u - step;
             if step.abs() <= 4.0 * f64::EPSILON * u || b - a <= 2.0 * f64::EPSILON * b {
                 let f = self.signs[1] * (u * (2.0 - u)).sqrt();
-                let spot = self.spot(rho, [e, f], w);
-                let ahead = m.abs() * (rho / (e * e) - bulge * f * f / e) * spot.q.signum();
-                return Some(beside.seen(out, spot, [outwards * f.abs(), ahead]));
+                let point = self.point(rho, [e, f], w);
+                let ahead = m.abs() * (rho / (e * e) - bulge * f * f / e) * point.q.signum();
+                return Some(beside.seen(out, point, [outwards * f.abs(), ahead]));
             }
             u = next;
         }

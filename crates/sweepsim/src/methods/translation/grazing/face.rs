@@ -46,22 +46,22 @@ impl<'a> Face<'a> {
 impl Curve for Face<'_> {
     #[inline]
     fn at(&self, at: [f64; 2]) -> Sight {
-        let (spot, g) = match &self.element.revolution {
+        let (point, g) = match &self.element.revolution {
             Some(revolution) => {
                 let turned = revolution.at(&self.placing, at);
-                (turned.spot(), turned.envelopes(&self.way))
+                (turned.point(), turned.envelopes(&self.way))
             }
             None => {
-                let (spot, fields) = self.element.spot(&self.placing, at);
-                (spot, fields.envelopes(&self.way))
+                let (point, fields) = self.element.point(&self.placing, at);
+                (point, fields.envelopes(&self.way))
             }
         };
         let three = |[q, p, z, _]: [f64; 4]| [q, p, z];
         let sight = Sight {
-            place: three(spot.place),
-            slopes: spot.slopes.map(three),
+            place: three(point.place),
+            slopes: point.slopes.map(three),
             g,
-            normal: three(spot.normal),
+            normal: three(point.normal),
         };
         match &self.centre {
             Some(centre) => centre.seen(&sight),

@@ -18,13 +18,13 @@ pub(super) struct Knot {
 
 /// What is known of the curve at one line: for other lines of its chart.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct KnownLine {
     /// A point of the chart near the curve, or near where that leaves the chart.
     pub witness: Option<Witness>,
     pub knot: Option<Knot>,
 }
 
-impl Seen {
+impl KnownLine {
     /// The witness nearest to `p`.
     pub fn nearest(ends: [&Self; 2], p: f64) -> Option<Witness> {
         let far = |witness: &Witness| (witness.value[0] - p).abs();

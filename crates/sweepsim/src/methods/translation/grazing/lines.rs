@@ -4,7 +4,7 @@ use super::super::Collector;
 use super::chart::{Chart, Region, Witness};
 use super::directed_motion::DirectedMotion;
 use super::face::{Curve, Sight};
-use super::knot::{Knot, Quintic, Seen};
+use super::knot::{Knot, KnownLine, Quintic};
 use super::span::{Graph, Known, Span, Spans, is_absent};
 use sweepsim_dexel::Source;
 
@@ -143,7 +143,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         let density = lines.scale(0).1 * lines.scale(1).1 * across;
         let least = f64::max(FEW as f64 / density, (p[1] - p[0]) / SPANS);
         let mut spans = Vec::new();
-        self.divide(p, [&Seen::default(); 2], None, least, &mut spans);
+        self.divide(p, [&KnownLine::default(); 2], None, least, &mut spans);
         spans
     }
 
@@ -151,7 +151,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     fn divide(
         &mut self,
         [low, high]: [f64; 2],
-        ends: [&Seen; 2],
+        ends: [&KnownLine; 2],
         larger: Option<&Quintic>,
         least: f64,
         spans: &mut Vec<Span>,
@@ -218,15 +218,15 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             return;
         };
         let polished = last > FEW;
-        let first = self.one(0, [&Seen::default(); 2], polished);
+        let first = self.one(0, [&KnownLine::default(); 2], polished);
         if last > 0 {
-            let end = self.one(last, [&first, &Seen::default()], polished);
+            let end = self.one(last, [&first, &KnownLine::default()], polished);
             self.between([1, last], [&first, &end], None);
         }
     }
 
     /// The lines from one number to another, between two others. `larger`: the polynomial through the knots of both and another one.
-    fn between(&mut self, [low, high]: [usize; 2], ends: [&Seen; 2], larger: Option<&Quintic>) {
+    fn between(&mut self, [low, high]: [usize; 2], ends: [&KnownLine; 2], larger: Option<&Quintic>) {
         if low >= high {
             return;
         }
@@ -326,19 +326,19 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     }
 
     /// One line, between two others.
-    fn one(&mut self, n: usize, ends: [&Seen; 2], polished: bool) -> Seen {
+    fn one(&mut self, n: usize, ends: [&KnownLine; 2], polished: bool) -> KnownLine {
         let Target { p, q, line } = self.targets[n];
         self.seen(p, Some((q, line)), ends, polished)
     }
 
     /// The curve at `p` between two other places, and the line that is there.
-    fn seen(&mut self, p: f64, line: Option<(f64, u32)>, ends: [&Seen; 2], polished: bool) -> Seen {
+    fn seen(&mut self, p: f64, line: Option<(f64, u32)>, ends: [&KnownLine; 2], polished: bool) -> KnownLine {
         let mut latest = None;
         let knot = self.solve((p, line), ends, polished, &mut latest);
         let witness = match &knot {
             Some(knot) => Some(knot.witness),
-            None => latest.or_else(|| Seen::nearest(ends, p)),
+            None => latest.or_else(|| KnownLine::nearest(ends, p)),
         };
-        Seen { witness, knot }
+        KnownLine { witness, knot }
     }
 }

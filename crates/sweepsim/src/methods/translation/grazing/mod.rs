@@ -19,7 +19,7 @@ mod walk;
 use super::{Ceiling, Collector};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
+use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, Size};
 use crate::methods::harvest::unit;
 use crate::time::circles::LevelArc;
 use at_rest::{Finds, Search, Still, TooMany};
@@ -243,7 +243,7 @@ impl Grazed<'_, '_> {
 pub(crate) struct Resting<'a, 'b> {
     pub pose: (Matrix3<f64>, Vector3<f64>),
     /// The motions before and after.
-    pub sides: [Side; 2],
+    pub sides: [JointSide; 2],
     pub size: Size,
     pub collector: &'a mut Collector<'b>,
     /// The longest last step of Newton's method.

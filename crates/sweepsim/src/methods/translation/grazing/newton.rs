@@ -2,7 +2,7 @@
 
 use super::chart::{Region, Witness, solved};
 use super::face::Curve;
-use super::knot::{Knot, Seen};
+use super::knot::{Knot, KnownLine};
 use super::lines::{Over, meets};
 use sweepsim_dexel::Source;
 
@@ -24,7 +24,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     pub fn solve(
         &mut self,
         (p, line): (f64, Option<(f64, u32)>),
-        ends: [&Seen; 2],
+        ends: [&KnownLine; 2],
         polished: bool,
         latest: &mut Option<Witness>,
     ) -> Option<Knot> {

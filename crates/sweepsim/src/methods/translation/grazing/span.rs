@@ -1,7 +1,7 @@
 //! Stretches of a grazing curve as polynomials: where a move goes over many lines, most of them are settled by a comparison of numbers.
 
 use super::chart::{Chart, Range, Witness};
-use super::knot::{Knot, Quintic, Seen};
+use super::knot::{Knot, KnownLine, Quintic};
 
 /// What is known of the curve of a chart over a range of `p`.
 pub(super) struct Span {
@@ -80,7 +80,7 @@ impl Spans {
 }
 
 /// Whether the curve is nowhere in the chart over a range of `p`, as points that were looked at near its ends tell.
-pub(super) fn is_absent(chart: &Chart, centre: &Witness, ends: [&Seen; 2], range: [f64; 2]) -> bool {
+pub(super) fn is_absent(chart: &Chart, centre: &Witness, ends: [&KnownLine; 2], range: [f64; 2]) -> bool {
     let mut region = chart.region_along(centre, range);
     for witness in ends.into_iter().filter_map(|end| end.witness.as_ref()) {
         region.intersect(&chart.region_along(witness, range));

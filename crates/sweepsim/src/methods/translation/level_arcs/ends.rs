@@ -1,7 +1,7 @@
 //! Where the squared distance of a curve from the centre is monotone, and where a line lies along the way of a point of it.
 
 use super::LevelArcSearch;
-use crate::methods::translation::curves::{Graph, Seen, Turned};
+use crate::methods::translation::curves::{Graph, Turned, TurnedPoint};
 use sweepsim_dexel::Source;
 
 /// What rounding may move a point of a curve by, in the rounding errors of a coordinate.
@@ -62,14 +62,14 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
                 };
                 return (p, s, shift + off);
             }
-            let spot = graph.at(p);
-            let s = self.square(spot.q, p);
+            let point = graph.at(p);
+            let s = self.square(point.q, p);
             if self.is_near(s) {
                 let s = turn(p).max(0.0);
                 (p, s, squares(OFF * slack, s))
             } else {
                 // Where s turns, the distance from the centre is as accurate as coordinates are.
-                (p, s, squares(OFF * slack * (1.0 + spot.slope.abs()), s))
+                (p, s, squares(OFF * slack * (1.0 + point.slope.abs()), s))
             }
         };
         let ends = [end(0), end(1)];
@@ -86,23 +86,23 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     }
 
     /// The point of a graph at `p`, for a value of `s`. `near`: `p` is as accurate as the distance.
-    pub(super) fn seen<G: Graph>(&self, graph: &G, bend: &Bend, s: f64, (p, near): (f64, bool)) -> Seen {
+    pub(super) fn seen<G: Graph>(&self, graph: &G, bend: &Bend, s: f64, (p, near): (f64, bool)) -> TurnedPoint {
         let (arc, side, slack) = (self.arc, self.side, self.heading.slack);
         let p = p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1]));
-        let spot = graph.at(p);
+        let point = graph.at(p);
         let out = arc.radius - side * p;
-        let far = arc.radius + p.abs() + spot.q.abs();
+        let far = arc.radius + p.abs() + point.q.abs();
         let distance = s.sqrt();
         // Of the point, and of s; then of p, and of the angle.
         let (own, square) = if near {
-            let own = slack * (8.0 + 4.0 * spot.slope.abs());
+            let own = slack * (8.0 + 4.0 * point.slope.abs());
             (own, own * (distance + own))
         } else {
             (4.0 * slack, 4.0 * slack * (far + distance))
         };
-        let off = square / (2.0 * (p - side * arc.radius + spot.q * spot.slope)).abs();
-        let error = own / distance + off * (out * spot.slope + side * spot.q).abs() / s;
-        Seen { out, spot, error }
+        let off = square / (2.0 * (p - side * arc.radius + point.q * point.slope)).abs();
+        let error = own / distance + off * (out * point.slope + side * point.q).abs() / s;
+        TurnedPoint { out, point, error }
     }
 
     /// Where a line lies along the arc of a point that starts at `(out, ahead)` from the centre. `error`: of angles.

@@ -72,7 +72,7 @@ enum Shape {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
+pub(super) struct CrosswisePoint {
     angle: f64,
     pub c: f64,
     pub s: f64,
@@ -87,7 +87,7 @@ pub(super) struct Point {
     rho: f64,
 }
 
-impl roots::Point for Point {
+impl roots::CurvePoint for CrosswisePoint {
     fn unknown(&self) -> f64 {
         self.angle
     }
@@ -184,7 +184,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// `ρ² − x²`, and its error where it is extreme in time.
-    pub fn square(&self, at: &Point) -> (f64, f64) {
+    pub fn square(&self, at: &CrosswisePoint) -> (f64, f64) {
         let growth = match self.shape {
             Shape::Cone { rate, .. } => (rate * at.rho).abs(),
             Shape::Torus { .. } => (at.eta * at.rho / at.u).abs(),
@@ -194,7 +194,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// The outward normal, with half of what is covered.
-    pub fn normal(&self, at: &Point, half: f64) -> [f64; 3] {
+    pub fn normal(&self, at: &CrosswisePoint, half: f64) -> [f64; 3] {
         let [e, f] = match self.shape {
             Shape::Cone { .. } => match self.quarter.curve {
                 Profile::Cone { normal, .. } => normal,
@@ -224,17 +224,17 @@ impl<'a> Crossing<'a> {
 }
 
 impl Curve for Crossing<'_> {
-    type Point = Point;
+    type Point = CrosswisePoint;
 
     #[inline]
-    fn at(&self, angle: f64) -> Point {
+    fn at(&self, angle: f64) -> CrosswisePoint {
         let (s, c) = angle.sin_cos();
         let Self { r, q, .. } = *self;
         let x = q - r * c;
         match self.shape {
             Shape::Cone { rate, wide } => {
                 let twice = r * (1.0 + rate * rate);
-                Point {
+                CrosswisePoint {
                     angle,
                     c,
                     s,
@@ -260,7 +260,7 @@ impl Curve for Crossing<'_> {
                 } else {
                     [offset * eta / u, offset * r * (c * tube / u) * (c * tube / u) / u]
                 };
-                Point {
+                CrosswisePoint {
                     angle,
                     c,
                     s,
@@ -276,11 +276,11 @@ impl Curve for Crossing<'_> {
     }
 
     #[inline]
-    fn slope(&self, at: &Point) -> f64 {
+    fn slope(&self, at: &CrosswisePoint) -> f64 {
         at.slope
     }
 
-    fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
+    fn bounds(&self, [a, b]: [&CrosswisePoint; 2]) -> Bounds {
         let (r, q) = (self.r, self.q);
         // Neither turns back within a quadrant.
         let [c, s] = [sorted([a.c, b.c]), sorted([a.s, b.s])];
@@ -319,12 +319,12 @@ impl Curve for Crossing<'_> {
         }
     }
 
-    fn error_at(&self, at: &Point) -> f64 {
+    fn error_at(&self, at: &CrosswisePoint) -> f64 {
         self.bounds([at, at]).error
     }
 
     /// Next to an extreme of the height on a torus, `ρ |f c| > |e x s|`.
-    fn vanishes_nowhere(&self, [a, b]: [&Point; 2]) -> bool {
+    fn vanishes_nowhere(&self, [a, b]: [&CrosswisePoint; 2]) -> bool {
         let Shape::Torus { tube, .. } = self.shape else {
             return false;
         };

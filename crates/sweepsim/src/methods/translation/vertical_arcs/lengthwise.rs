@@ -4,7 +4,7 @@
 
 use super::quarter::{Lengthwise, Quarter};
 use super::roots::{Open, Root, Search};
-use super::sheet::{Parallel, Point};
+use super::sheet::{Parallel, SheetPoint};
 use super::{Directions, Place, ROUNDING, Rolling};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use sweepsim_dexel::Source;
@@ -201,7 +201,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// What both halves of the section have at a solution.
-    fn both(&mut self, search: &Search<Lengthwise>, root: Root<Point>, (i, j): (usize, usize)) -> Result<(), Open> {
+    fn both(
+        &mut self,
+        search: &Search<Lengthwise>,
+        root: Root<SheetPoint>,
+        (i, j): (usize, usize),
+    ) -> Result<(), Open> {
         let Search {
             curve: Lengthwise { quarter, parallel },
             y,

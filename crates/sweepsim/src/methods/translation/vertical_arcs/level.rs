@@ -265,7 +265,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// Where what is covered over a line is extreme.
-    fn extreme(&mut self, line: usize, crossing: &Crossing, root: Root<super::crosswise::Point>) -> Result<(), Open> {
+    fn extreme(
+        &mut self,
+        line: usize,
+        crossing: &Crossing,
+        root: Root<super::crosswise::CrosswisePoint>,
+    ) -> Result<(), Open> {
         let Root { at, error, grows } = root;
         let share = match self.place([at.c, at.s], error) {
             Place::Outside => return Ok(()),

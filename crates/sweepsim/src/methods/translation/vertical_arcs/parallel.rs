@@ -3,7 +3,7 @@
 //! For one line the unknown is `v`, the place in the section ahead of the tool's axis or, mirrored, behind it.
 
 use super::roots::{Open, Root, Search};
-use super::sheet::{Parallel, Point, Sheet};
+use super::sheet::{Parallel, Sheet, SheetPoint};
 use super::{Directions, Place, ROUNDING, Rolling};
 use sweepsim_dexel::Source;
 
@@ -93,7 +93,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         Ok(())
     }
 
-    fn root(&mut self, search: &Search<Parallel>, root: Root<Point>, (i, j): (usize, usize)) -> Result<(), Open> {
+    fn root(&mut self, search: &Search<Parallel>, root: Root<SheetPoint>, (i, j): (usize, usize)) -> Result<(), Open> {
         let Search {
             curve: parallel,
             y,

@@ -3,7 +3,7 @@
 //! The unknown is the height, taken with the sign with which it grows with the radius: then a stretch looks like a [`Sheet`], and the bounds of one serve both.
 
 use super::roots::{Bounds, Curve};
-use super::sheet::{Meridian, Parallel, Point, Sheet};
+use super::sheet::{Meridian, Parallel, Sheet, SheetPoint};
 use crate::cutter::outline::{Piece, Shape};
 use std::f64::consts::FRAC_PI_2;
 
@@ -201,10 +201,10 @@ impl Lengthwise<'_> {
 }
 
 impl Curve for Lengthwise<'_> {
-    type Point = Point;
+    type Point = SheetPoint;
 
     #[inline]
-    fn at(&self, x: f64) -> Point {
+    fn at(&self, x: f64) -> SheetPoint {
         let Quarter { sheet, ends, curve, .. } = self.quarter;
         let Parallel { p, r, side, .. } = self.parallel;
         let (rho, e, square) = match *curve {
@@ -229,7 +229,7 @@ impl Curve for Lengthwise<'_> {
         } else {
             0.0
         };
-        Point {
+        SheetPoint {
             x,
             v,
             rho,
@@ -242,11 +242,11 @@ impl Curve for Lengthwise<'_> {
     }
 
     #[inline]
-    fn slope(&self, at: &Point) -> f64 {
+    fn slope(&self, at: &SheetPoint) -> f64 {
         self.parallel.growth(at)
     }
 
-    fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
+    fn bounds(&self, [a, b]: [&SheetPoint; 2]) -> Bounds {
         match self.parallel.growths([a, b]) {
             Some((slope, norm_sq)) => Bounds {
                 slope,
@@ -256,7 +256,7 @@ impl Curve for Lengthwise<'_> {
         }
     }
 
-    fn error_at(&self, at: &Point) -> f64 {
+    fn error_at(&self, at: &SheetPoint) -> f64 {
         self.error([at.v, at.rho], at.square, at.norm_sq)
     }
 

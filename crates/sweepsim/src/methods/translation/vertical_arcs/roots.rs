@@ -36,14 +36,14 @@ impl Bounds {
 }
 
 /// A point with its unknown, and the value there.
-pub(super) trait Point: Copy {
+pub(super) trait CurvePoint: Copy {
     fn unknown(&self) -> f64;
     fn value(&self) -> f64;
 }
 
 /// A function of one unknown.
 pub(super) trait Curve {
-    type Point: Point;
+    type Point: CurvePoint;
     fn at(&self, x: f64) -> Self::Point;
     /// `Q′`.
     fn slope(&self, at: &Self::Point) -> f64;

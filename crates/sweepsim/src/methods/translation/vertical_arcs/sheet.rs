@@ -57,7 +57,7 @@ pub(super) struct Parallel<'a> {
 
 /// A point of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
+pub(super) struct SheetPoint {
     /// The unknown.
     pub x: f64,
     pub v: f64,
@@ -155,7 +155,7 @@ impl Sheet {
         [a >= 0.0, b <= 0.0]
     }
 
-    pub fn height(&self, point: &Point) -> f64 {
+    pub fn height(&self, point: &SheetPoint) -> f64 {
         match self.curve {
             Meridian::Cone { from, rate, .. } => from[1] + rate * (point.rho - from[0]),
             Meridian::Torus { centre, tube, .. } => centre[1] + self.up * tube * point.square.sqrt(),
@@ -163,7 +163,7 @@ impl Sheet {
     }
 }
 
-impl roots::Point for Point {
+impl roots::CurvePoint for SheetPoint {
     fn unknown(&self) -> f64 {
         self.x
     }
@@ -174,16 +174,16 @@ impl roots::Point for Point {
 }
 
 impl Curve for Parallel<'_> {
-    type Point = Point;
+    type Point = SheetPoint;
 
     #[inline]
-    fn at(&self, v: f64) -> Point {
+    fn at(&self, v: f64) -> SheetPoint {
         let rho = (v * v + self.p * self.p).sqrt();
         let [e, square] = self.sheet.normal(rho);
         let norm_sq = v * v + square * self.p * self.p;
         // At a tip, where there is no normal.
         let nu = if norm_sq > 0.0 { e * v / norm_sq.sqrt() } else { 0.0 };
-        Point {
+        SheetPoint {
             x: v,
             v,
             rho,
@@ -196,12 +196,12 @@ impl Curve for Parallel<'_> {
     }
 
     #[inline]
-    fn slope(&self, at: &Point) -> f64 {
+    fn slope(&self, at: &SheetPoint) -> f64 {
         self.growth(at)
     }
 
     /// Not negative places.
-    fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
+    fn bounds(&self, [a, b]: [&SheetPoint; 2]) -> Bounds {
         match self.growths([a, b]) {
             Some((slope, norm_sq)) => Bounds {
                 slope,
@@ -211,11 +211,11 @@ impl Curve for Parallel<'_> {
         }
     }
 
-    fn error_at(&self, at: &Point) -> f64 {
+    fn error_at(&self, at: &SheetPoint) -> f64 {
         self.error([at.v, at.rho], at.norm_sq)
     }
 
-    fn is_axis(&self, at: &Point) -> bool {
+    fn is_axis(&self, at: &SheetPoint) -> bool {
         at.v == 0.0
     }
 
@@ -227,7 +227,7 @@ impl Curve for Parallel<'_> {
 impl Parallel<'_> {
     /// `Q′`: `ν′ = (v² ρ w + e f² p²)/D^(3/2)` with the curvature `w` of the meridian.
     #[inline]
-    pub fn growth(&self, at: &Point) -> f64 {
+    pub fn growth(&self, at: &SheetPoint) -> f64 {
         let top = at.v * at.v * at.rho * self.sheet.bend() + at.e * at.square * self.p * self.p;
         1.0 + self.side * self.r * top / (at.norm_sq * at.norm_sq.sqrt())
     }
@@ -252,7 +252,7 @@ impl Parallel<'_> {
     }
 
     /// The range of `Q′` between two places in the order of `v`, and the least `D`. `None` if it is not known.
-    pub fn growths(&self, [a, b]: [&Point; 2]) -> Option<([f64; 2], f64)> {
+    pub fn growths(&self, [a, b]: [&SheetPoint; 2]) -> Option<([f64; 2], f64)> {
         let [least, most] = if a.e * b.e >= 0.0 {
             [a.square.min(b.square), a.square.max(b.square)]
         } else {

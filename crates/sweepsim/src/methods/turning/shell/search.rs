@@ -256,9 +256,9 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 if !(turned < 0.125) {
                     return None;
                 }
-                let spot = shell.spot(posed, meeting, (sheet, sample.rise, step), slack);
+                let point = shell.point(posed, meeting, (sheet, sample.rise, step), slack);
                 let way = (speed + sample.rise.abs()) * step.abs();
-                let inside = ends.hold(spot.along, spot.error + 2.0 * way)?;
+                let inside = ends.hold(point.along, point.error + 2.0 * way)?;
                 // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
                 if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
                     return None;
@@ -267,8 +267,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 let known = Known::new(line.at, t, (gradient, side * sample.slope), last);
                 let turn = Turn {
                     t,
-                    height: spot.height,
-                    normal: spot.normal,
+                    height: point.height,
+                    normal: point.normal,
                 };
                 Some((inside.then_some(turn), known))
             },

@@ -44,8 +44,8 @@ fn agrees<S: Shell>(
                 continue;
             }
             let g = meeting.g[sheet];
-            let spot = shell.spot(posed, meeting, (sheet, 0.0, 0.0), 1e-14);
-            let held = shell.ends().hold(spot.along, 1e-9);
+            let point = shell.point(posed, meeting, (sheet, 0.0, 0.0), 1e-14);
+            let held = shell.ends().hold(point.along, 1e-9);
             if held == Some(true) {
                 prop_assert!(signs[sheet] != Sign::Absent && falls != Falls::Beyond);
                 prop_assert!(signs[sheet] != Sign::Positive || g > 0.0);
@@ -82,7 +82,7 @@ fn agrees<S: Shell>(
                     );
                 }
                 let height = |(_, posed, meeting): &(f64, S::Posed, Meeting)| {
-                    shell.spot(posed, meeting, (sheet, 0.0, 0.0), 1e-14).height
+                    shell.point(posed, meeting, (sheet, 0.0, 0.0), 1e-14).height
                 };
                 let difference = (height(&high) - height(&low)) / (2.0 * h);
                 prop_assert!(
