@@ -1,6 +1,6 @@
 //! Meshes of fewer triangles, within a certified distance.
 
-use super::near::within;
+use super::near::is_certainly_within;
 use super::{DistanceTo, Mesh, MeshError};
 use crate::vector::{dot, length, normal_of, sub};
 use alum::{DVec3, Decimater, HH, Handle, HasDecimation, HasIterators, HasTopology, PolyMeshF64, VH};
@@ -50,7 +50,7 @@ impl Mesh {
             let soup = made.soup().unwrap_or_default();
             if made.triangles.len() < whole.triangles.len() && soup.check_closed().is_ok() {
                 let fewer = DistanceTo::new(&soup)?;
-                if within(&own, &fewer, deviation) && within(&soup, &tree, deviation) {
+                if is_certainly_within(&own, &fewer, deviation) && is_certainly_within(&soup, &tree, deviation) {
                     return Ok(made);
                 }
             }

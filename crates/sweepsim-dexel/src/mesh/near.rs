@@ -11,7 +11,7 @@ const PARTS: usize = 1 << 16;
 const LARGER: f64 = 4.0;
 
 /// Whether every point of a surface is certainly no further than `most` from another one.
-pub(super) fn within(surface: &TriangleSoup, other: &DistanceTo, most: f64) -> bool {
+pub(super) fn is_certainly_within(surface: &TriangleSoup, other: &DistanceTo, most: f64) -> bool {
     surface
         .triangles
         .par_iter()

@@ -94,14 +94,14 @@ impl Planes {
         if (0..3).all(|c| bounds[c][0] <= off[c] && off[c] <= bounds[c][1]) {
             return place;
         }
-        let nearest = within(a, b, bounds, WEIGHT * directions[0].0);
+        let nearest = minimiser(a, b, bounds, WEIGHT * directions[0].0);
         [0, 1, 2].map(|c| middle[c] + nearest[c])
     }
 }
 
 /// Minimises `xᵀAx − 2bᵀx + weight·xᵀx` within bounds around 0, one coordinate after the other, which converges for
 /// convex functions.
-fn within(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> [f64; 3] {
+fn minimiser(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> [f64; 3] {
     let mut x = [0.0; 3];
     for _ in 0..SWEEPS {
         for c in 0..3 {

@@ -13,13 +13,14 @@
 
 mod ends;
 
+use super::arc_place::ArcPlace;
 use super::curves::{Beside, Graph, Heading, Parabola, Turned, TurnedPoint, ring, slant, torus};
 use super::rows::{Row, Sector};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
 use crate::time::circles::LevelArc;
-use ends::{Bend, Place};
+use ends::Bend;
 use std::f64::consts::PI;
 use sweepsim_dexel::Source;
 
@@ -325,8 +326,8 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
                 let place = self.place([x, y], [out, point.q], s, error);
                 let line = lattice.line(i, j);
                 match place {
-                    Place::Outside => {}
-                    Place::Inside([c, n]) if point.certain && !doubtful => {
+                    ArcPlace::Outside => {}
+                    ArcPlace::Inside([c, n]) if point.certain && !doubtful => {
                         let t = n.atan2(c) / turn;
                         let [fx, fy] = arc.from;
                         // Outwards and ahead after the turn.

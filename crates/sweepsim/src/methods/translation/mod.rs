@@ -8,6 +8,7 @@
 //! Every decision (which curve, which time, which sign) is taken only beyond its rounding error; a line for which one is closer is left open, and
 //! solved by the general method.
 
+mod arc_place;
 mod arcs_about_axis;
 mod at_rest;
 mod ceiling;

@@ -44,7 +44,7 @@ impl Band {
 
     /// The values of `y`, about.
     #[inline]
-    fn within(&self, base: f64) -> [f64; 2] {
+    fn values(&self, base: f64) -> [f64; 2] {
         let [low, high] = self.range;
         if self.inverse == 0.0 {
             return if base >= low && base <= high {
@@ -105,7 +105,7 @@ fn search(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl
     let (across, along) = (Band::new(p, ux), Band::new(q, uy));
     for i in first..=last {
         let x = lines.coordinate(0, i) - floor.tip[0];
-        let (a, b) = (across.within(-uy * x), along.within(ux * x));
+        let (a, b) = (across.values(-uy * x), along.values(ux * x));
         let ys = [floor.tip[1] + a[0].max(b[0]), floor.tip[1] + a[1].min(b[1])];
         if let Some(j) = numbers(lines, 1, ys)
             && visit(Row { i, j, x })

@@ -10,7 +10,7 @@
 
 use super::axis_motion::{Bounds, Moment};
 use super::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
-use super::shell::{Ends, Falls, Meeting, Passage, Shell, ShellPoint};
+use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use crate::cutter::outline::Ball;
 use nalgebra::{Vector2, Vector3};
 
@@ -241,7 +241,7 @@ impl Shell for Ball {
         self.signs(limits, poses, line.map(|at| [at; 2]), length)[sheet] == Sign::Absent
     }
 
-    fn ends(&self) -> Ends {
-        Ends::new(self.ends)
+    fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 }

@@ -20,7 +20,7 @@ use super::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
 use super::lean::Lean;
-use super::shell::{Ends, Falls, Meeting, Passage, Shell, ShellPoint};
+use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use nalgebra::Vector3;
 
 /// The part of a cylinder between two heights.
@@ -346,7 +346,7 @@ impl Shell for Cylinder {
         from / (from + to)
     }
 
-    fn ends(&self) -> Ends {
-        Ends::new(self.ends)
+    fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 }

@@ -8,6 +8,7 @@ use super::disc::{Disc, Placed};
 use super::intervals::{Range, Sign};
 use super::lean::Lean;
 use super::shell::Shell;
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
@@ -66,7 +67,7 @@ impl Resting<'_> {
                 continue;
             }
             let point = shell.point(pose, &own, (sheet, 0.0, 0.0), searching.slack);
-            let inside = shell.ends().hold(point.along, point.error);
+            let inside = certainly_within(point.along, shell.ends(), point.error);
             if inside == Some(false) || !searching.collector.lines.asks(place.0, place.1) {
                 continue;
             }

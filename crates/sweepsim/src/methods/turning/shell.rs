@@ -70,30 +70,6 @@ pub(super) struct ShellPoint {
     pub error: f64,
 }
 
-/// The range of a piece on the tool's axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ends {
-    range: [f64; 2],
-}
-
-impl Ends {
-    pub fn new(range: [f64; 2]) -> Self {
-        Self { range }
-    }
-
-    /// Whether a point lies between them, if that is certain.
-    pub fn hold(&self, along: f64, error: f64) -> Option<bool> {
-        let [low, high] = self.range;
-        if along > low + error && along < high - error {
-            Some(true)
-        } else if along < low - error || along > high + error {
-            Some(false)
-        } else {
-            None
-        }
-    }
-}
-
 /// A closed surface of the tool, extended beyond the ends of its piece. Sheets: 0 is below, 1 above.
 pub(super) trait Shell {
     /// What it needs to know of a moment.
@@ -134,7 +110,8 @@ pub(super) trait Shell {
     /// The point of a sheet where it turns, a time `step` later, with the derivative of the height now.
     fn point(&self, at: &Self::Posed, meeting: &Meeting, to: (usize, f64, f64), slack: f64) -> ShellPoint;
 
-    fn ends(&self) -> Ends;
+    /// The range of its piece on the tool's axis.
+    fn ends(&self) -> [f64; 2];
 
     /// The share of a span after which a line is probably inside that is beside the surface at both ends.
     fn nearest(&self, ends: [&Meeting; 2]) -> f64;

@@ -1,7 +1,8 @@
 //! A cone or a cylinder along an arc about its axis: the cones with the radius `R ± ρ` about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products, within};
+use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products};
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Piece;
 use sweepsim_dexel::Source;
 
@@ -83,7 +84,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let doubt = 4.0 * self.coarse * (1.0 + cone.growth.abs());
         let mut ends = [doubt; 2];
         if along == 0.0 {
-            match within(view.z, cone.heights, self.coarse) {
+            match certainly_within(view.z, cone.heights, self.coarse) {
                 Some(false) => return Ok(()),
                 None => return Err(Open),
                 Some(true) => {}

@@ -19,6 +19,7 @@ mod roots;
 mod tube;
 
 use super::Collector;
+use super::arc_place::ArcPlace;
 use super::curves::Heading;
 use super::rows::{Floor, Row, rows};
 use crate::cutter::outline::{Outline, Piece, Shape};
@@ -174,25 +175,6 @@ struct EnvelopePoint {
     jump: i8,
 }
 
-/// What the ends of an arc say of a direction.
-enum Place {
-    Outside,
-    Near,
-    /// With the share of the way.
-    Inside(f64),
-}
-
-/// Whether a number lies in a range, if that is certain.
-fn within(value: f64, [low, high]: [f64; 2], error: f64) -> Option<bool> {
-    if value > low + error && value < high - error {
-        Some(true)
-    } else if value < low - error || value > high + error {
-        Some(false)
-    } else {
-        None
-    }
-}
-
 /// The length of a vector of coordinates, which are far from overflow: `hypot` takes ten times as long.
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
@@ -303,20 +285,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     }
 
     /// Where a direction is on the arc; its angle is known up to an error.
-    fn place(&self, [x, y]: [f64; 2], error: f64) -> Place {
+    fn place(&self, [x, y]: [f64; 2], error: f64) -> ArcPlace {
         let ([fx, fy], side, angle) = (self.arc.from, self.arc.side(), self.arc.angle.abs());
-        // The turn from the start, as a complex number, and seen from the end.
-        let (cosine, sine) = (x * fx + y * fy, side * (y * fx - x * fy));
-        let (end_sine, end_cosine) = angle.sin_cos();
-        let end = sine * end_cosine - cosine * end_sine;
-        let error = (error + ROUNDING) * length(x, y);
-        if sine < -error || end > error {
-            Place::Outside
-        } else if sine > error && end < -error {
-            Place::Inside(sine.atan2(cosine) / angle)
-        } else {
-            Place::Near
-        }
+        let turn = [x * fx + y * fy, side * (y * fx - x * fy)];
+        ArcPlace::share(turn, angle, (error + ROUNDING) * length(x, y))
     }
 
     /// How far the tool has risen where the tip is in a direction.
@@ -329,9 +301,9 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     /// A crossing, if the tip comes there in this part of the arc.
     fn settle(&mut self, view: &View, sector: Sector, point: &EnvelopePoint) -> Result<(), Open> {
         let share = match self.place(point.tip, point.askew) {
-            Place::Outside => return Ok(()),
-            Place::Near => return Err(Open),
-            Place::Inside(share) => share,
+            ArcPlace::Outside => return Ok(()),
+            ArcPlace::Near => return Err(Open),
+            ArcPlace::Inside(share) => share,
         };
         if share < sector.shares[0] || share >= sector.shares[1] {
             return Ok(());

@@ -1,7 +1,7 @@
 //! A sharp edge along an arc about its axis, which stays in its plane but for the rise.
 
 use super::roots::Open;
-use super::{AXIS, Along, EnvelopePoint, Orbit, Place, Sector, View, length, products};
+use super::{AXIS, Along, ArcPlace, EnvelopePoint, Orbit, Sector, View, length, products};
 use crate::cutter::outline::Rim;
 use sweepsim_dexel::Source;
 
@@ -94,7 +94,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             let wide = (2.0 * (GRAZING + 2.0) * doubt).sqrt().min(1.5);
             let sign = 1.0_f64.copysign(c);
             return match self.place([sign * start, sign * y], wide) {
-                Place::Outside => Ok(()),
+                ArcPlace::Outside => Ok(()),
                 _ => Err(Open),
             };
         }
@@ -107,7 +107,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         for turn in [1.0, -1.0] {
             let (sine, tip) = around(start, far, turn);
             // The tip moves by no more than the doubt in the cosine, over the sine; next to a torus, doubts are looked at below.
-            if level.is_none() && matches!(self.place(tip, 4.0 * doubt / sine), Place::Outside) {
+            if level.is_none() && matches!(self.place(tip, 4.0 * doubt / sine), ArcPlace::Outside) {
                 continue;
             }
             // From here to there, how far the tool has risen changes by a tiny part of its rise, which is itself no more than a hundredth of the tolerance.
@@ -143,7 +143,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             if !(ahead.abs() > 4.0 * self.slope.abs().sqrt() + error) {
                 // Whatever the signs are; but not if it is not on the arc.
                 return match self.place(tip, askew + 8.0 * self.slope.abs().sqrt() * (1.0 + radius / far)) {
-                    Place::Outside => Ok(()),
+                    ArcPlace::Outside => Ok(()),
                     _ => Err(Open),
                 };
             }
@@ -157,7 +157,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let [(a, a_error), (b, b_error)] = rim.normals.map(g);
         if !((a.abs() > a_error || a_error == 0.0) && (b.abs() > b_error || b_error == 0.0)) {
             return match self.place(tip, askew) {
-                Place::Outside => Ok(()),
+                ArcPlace::Outside => Ok(()),
                 _ => Err(Open),
             };
         }

@@ -1,7 +1,8 @@
 //! A ball or a torus along an arc about its axis: tubes about circles about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products, within};
+use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products};
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Piece, Rim, Shape};
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim_dexel::Source;
@@ -236,12 +237,12 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let (out, up) = (sign * (rho - tube.centres), view.z + along * w - lift - tube.height);
         let off = 4.0 * (error * (across.abs() + along.abs()) + self.coarse);
         let inside = match tube.part {
-            TubePart::Heights(ends) => within(up, ends, off),
+            TubePart::Heights(ends) => certainly_within(up, ends, off),
             TubePart::Angles([middle, half], flat) => {
                 let (s, c) = middle.sin_cos();
                 let (a, b) = (tube.side * out, up);
                 let apart = (b * c - a * s).atan2(a * c + b * s).abs();
-                let inside = within(apart, [-1.0, half], off / r + 8.0 * f64::EPSILON);
+                let inside = certainly_within(apart, [-1.0, half], off / r + 8.0 * f64::EPSILON);
                 // Beyond half a turn from the middle there is nothing.
                 let inside = if half >= PI { Some(true) } else { inside };
                 match inside {

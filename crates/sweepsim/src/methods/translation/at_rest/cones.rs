@@ -1,7 +1,8 @@
 //! Where a dexel line meets a cone or a cylinder of a leaning tool: see [`leaning`](super::leaning).
 
 use super::cone_sign_changes::Wedge;
-use super::leaning::{LeaningPoint, PARALLEL, Points, within};
+use super::leaning::{LeaningPoint, PARALLEL, Points};
+use crate::algebra::certain::certainly_within;
 
 /// Nearer to the axis than this, azimuths say nothing.
 const APEX: f64 = 1e-6;
@@ -116,7 +117,7 @@ impl Cone {
                 height: a * s + height * k,
                 normal: [n * a / rho, n * b / rho, 0.0],
                 error: [error / rho, 0.0],
-                inside: within(rise, heights, error + 8.0 * self.slack),
+                inside: certainly_within(rise, heights, error + 8.0 * self.slack),
             })
         }))
     }
@@ -161,12 +162,12 @@ impl Cone {
         let inside = if m.abs() > n.abs() {
             // An apex is no end.
             let [low, high] = self.ends[0];
-            within(rho, [if low == 0.0 { -1.0 } else { low }, high], error)
+            certainly_within(rho, [if low == 0.0 { -1.0 } else { low }, high], error)
         } else {
             let apex = self.ends[0][0] == 0.0 && rho < self.ends[0][1];
-            let inside = within(height, self.ends[1], blur);
+            let inside = certainly_within(height, self.ends[1], blur);
             if apex && inside.is_none() {
-                within(rho, [-1.0, self.ends[0][1]], error)
+                certainly_within(rho, [-1.0, self.ends[0][1]], error)
             } else {
                 inside
             }

@@ -16,6 +16,7 @@ use super::super::rows::{Floor, Row, rows};
 use super::Neighbour;
 use super::cone_sign_changes::wedges;
 use super::cones::Cone;
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use nalgebra::Matrix3;
@@ -93,17 +94,6 @@ pub(super) struct LeaningPoint {
     pub inside: Option<bool>,
 }
 
-/// Whether a number lies in a range, if that is certain.
-pub(super) fn within(value: f64, [low, high]: [f64; 2], error: f64) -> Option<bool> {
-    if value > low + error && value < high - error {
-        Some(true)
-    } else if value < low - error || value > high + error {
-        Some(false)
-    } else {
-        None
-    }
-}
-
 /// The points of a line: their number is not certain for a tangent.
 pub(super) enum Points {
     Two([Option<LeaningPoint>; 2]),
@@ -144,7 +134,8 @@ impl Leaning<'_, '_> {
                     let a = (s * from[1] - q) / k;
                     let rho = (a * a + b * b).sqrt();
                     // The centre is no end.
-                    let inside = within(rho, [if radii[0] == 0.0 { -1.0 } else { radii[0] }, radii[1]], error);
+                    let inside =
+                        certainly_within(rho, [if radii[0] == 0.0 { -1.0 } else { radii[0] }, radii[1]], error);
                     let point = LeaningPoint {
                         height: a * s + from[1] * k,
                         normal: [0.0, 0.0, up],
@@ -205,7 +196,7 @@ impl Leaning<'_, '_> {
                             height: k * middle + rise,
                             normal: [a, b, along].map(|c| out * c / radius),
                             error: [error / radius; 2],
-                            inside: within(middle + along, ends, error),
+                            inside: certainly_within(middle + along, ends, error),
                         })
                     }))
                 });

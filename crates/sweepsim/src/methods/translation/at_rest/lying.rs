@@ -2,7 +2,8 @@
 
 use super::super::stretches::{HeightRange, Stretch};
 use super::cone_sign_changes::{Wedge, wedges_between};
-use super::leaning::{Leaning, LeaningPoint, Points, within};
+use super::leaning::{Leaning, LeaningPoint, Points};
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Piece;
 
 /// A vanishing distance is beyond doubt from so many times its error on.
@@ -37,7 +38,7 @@ impl Leaning<'_, '_> {
         let [low, high] = [0, 1].map(|k| s * stretch.heights[k].clamp(part.heights[0], part.heights[1]));
         self.visit([across, [low, high]], |q, b| {
             let height = q / s;
-            let inside = within(height, stretch.heights, 8.0 * slack);
+            let inside = certainly_within(height, stretch.heights, 8.0 * slack);
             let here = height >= part.heights[0] && height < part.heights[1];
             if inside == Some(false) || !here {
                 return Points::Two([None, None]);

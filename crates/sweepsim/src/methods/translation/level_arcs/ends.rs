@@ -1,6 +1,7 @@
 //! Where the squared distance of a curve from the centre is monotone, and where a line lies along the way of a point of it.
 
 use super::LevelArcSearch;
+use crate::methods::translation::arc_place::ArcPlace;
 use crate::methods::translation::curves::{Graph, Turned, TurnedPoint};
 use sweepsim_dexel::Source;
 
@@ -15,14 +16,6 @@ pub(super) struct Bend {
     pub margins: [f64; 2],
     /// By which the jumps of the graph are multiplied.
     pub sense: i8,
-}
-
-/// What the sides of a line say of it.
-pub(super) enum Place {
-    Outside,
-    Near,
-    /// With the cosine and the sine of the angle that the tool has turned by.
-    Inside([f64; 2]),
 }
 
 impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
@@ -106,21 +99,12 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
     }
 
     /// Where a line lies along the arc of a point that starts at `(out, ahead)` from the centre. `error`: of angles.
-    pub(super) fn place(&self, [x, y]: [f64; 2], [out, ahead]: [f64; 2], s: f64, error: f64) -> Place {
+    pub(super) fn place(&self, [x, y]: [f64; 2], [out, ahead]: [f64; 2], s: f64, error: f64) -> ArcPlace<[f64; 2]> {
         let [fx, fy] = self.arc.from;
         let own = [x * fx + y * fy, self.side * (y * fx - x * fy)];
         // The angle from the point to the line, as a complex number.
         let c = own[0] * out + own[1] * ahead;
         let n = own[1] * out - own[0] * ahead;
-        let (end_sine, end_cosine) = self.arc.angle.abs().sin_cos();
-        let end = n * end_cosine - c * end_sine;
-        let error = error * s;
-        if n < -error || end > error {
-            Place::Outside
-        } else if n > error && end < -error {
-            Place::Inside([c / s, n / s])
-        } else {
-            Place::Near
-        }
+        ArcPlace::new([c, n], self.arc.angle.abs(), error * s, || [c / s, n / s])
     }
 }

@@ -106,7 +106,7 @@ impl Ground {
 
     /// `p` and `q` of a line from the origin, if they are in a window that is wider by so many times the rounding error. NaN is inside.
     #[inline]
-    fn within(&self, [x, y]: [f64; 2], [p, q]: Window, margins: f64) -> Option<[f64; 2]> {
+    fn place_in(&self, [x, y]: [f64; 2], [p, q]: Window, margins: f64) -> Option<[f64; 2]> {
         let off = |own: f64, [low, high]: [f64; 2], margin: f64| own < low - margin || own > high + margin;
         let margin = margins * self.slack();
         match self {
@@ -149,7 +149,7 @@ impl Ground {
         self.search(lines, window, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lines.coordinate(1, j) - oy;
-                if let Some(place) = self.within([x, y], window, 0.0)
+                if let Some(place) = self.place_in([x, y], window, 0.0)
                     && lines.asks(i, j)
                 {
                     each(lines.line(i, j), place);
@@ -166,7 +166,7 @@ impl Ground {
         self.search(lines, window, |Row { i, j, x }| {
             (j[0]..=j[1]).any(|j| {
                 let y = lines.coordinate(1, j) - oy;
-                self.within([x, y], window, 2.0).is_some() && lines.asks(i, j)
+                self.place_in([x, y], window, 2.0).is_some() && lines.asks(i, j)
             })
         })
     }

@@ -73,7 +73,7 @@ impl Sector {
             let mut range = [ys[0] - self.centre[1], ys[1] - self.centre[1]];
             if !whole {
                 for (band, rate) in &sides {
-                    let [low, high] = band.within(rate * x);
+                    let [low, high] = band.values(rate * x);
                     range = [range[0].max(low), range[1].min(high)];
                 }
             }

@@ -1,6 +1,6 @@
 //! A ball along an arc in a plane along the dexels: two circles in the section of each line.
 
-use super::{Directions, Place, Rolling};
+use super::{ArcPlace, Directions, Rolling};
 use crate::cutter::outline::Ball;
 use sweepsim_dexel::Source;
 
@@ -88,7 +88,7 @@ fn circle<S: Fn(f64) -> Source>(
     let [aq, ap, az] = rolling.axis;
     for sine in [sine, -sine] {
         let place = rolling.place([cosine, sine], error);
-        if matches!(place, Place::Outside) {
+        if matches!(place, ArcPlace::Outside) {
             continue;
         }
         let normal = [nu * cosine, p, nu * sine];
@@ -99,7 +99,7 @@ fn circle<S: Fn(f64) -> Source>(
             continue;
         }
         match place {
-            Place::Inside(share) if along > low + doubt && along < high - doubt => {
+            ArcPlace::Inside(share) if along > low + doubt && along < high - doubt => {
                 let jump = if (normal[2] > 0.0) == (s > 0.0) { -1 } else { 1 };
                 let source = (rolling.source)(share);
                 let normal = rolling.in_space(normal);

@@ -161,7 +161,7 @@ impl<'a> Crossing<'a> {
     }
 
     /// The ranges of the ends of the angles at which the line is between the ends of the surface; where it is beside it all the time is left out. `None` if it is nowhere.
-    pub fn within(&self, [low, high]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    pub fn angles_between_ends(&self, [low, high]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let (r, wide) = (self.r, 4.0 * self.slack);
         let [near, far] = sorted(self.quarter.ends.map(|end| self.quarter.climb * end));
         let outer = self.quarter.sheet.radii[1] + wide;
@@ -371,7 +371,7 @@ mod tests {
             for quarter in Quarter::all(&piece, 1e-14).unwrap_or_default() {
                 let crossing = Crossing::new(&quarter, (r, 1e-14), place, quadrant);
                 let first = quadrant as f64 * FRAC_PI_2;
-                let Some([from, to]) = crossing.within([first, first + FRAC_PI_2]) else { continue };
+                let Some([from, to]) = crossing.angles_between_ends([first, first + FRAC_PI_2]) else { continue };
                 prop_assert!(from[0] <= from[1] && to[0] <= to[1] && from[0] >= first && to[1] <= first + FRAC_PI_2);
                 let [a, b] = sorted(shares.map(|share| from[1] + (to[0] - from[1]) * (0.001 + 0.998 * share)));
                 let [a, b] = [a, b].map(|angle| crossing.at(angle));

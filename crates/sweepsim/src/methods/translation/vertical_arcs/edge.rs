@@ -1,6 +1,6 @@
 //! A sharp edge of an upright tool along an arc in a plane along the dexels.
 
-use super::{Directions, Place, Rolling};
+use super::{ArcPlace, Directions, Rolling};
 use crate::cutter::outline::Rim;
 use sweepsim_dexel::Source;
 
@@ -51,12 +51,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             };
             for sine in [sine, -sine] {
                 let share = match self.place([cosine, sine], error) {
-                    Place::Outside => continue,
-                    Place::Near => {
+                    ArcPlace::Outside => continue,
+                    ArcPlace::Near => {
                         self.lines.open(line);
                         return;
                     }
-                    Place::Inside(share) => share,
+                    ArcPlace::Inside(share) => share,
                 };
                 let side = self.arc.side();
                 // The direction of the motion, on the edge outwards and up.

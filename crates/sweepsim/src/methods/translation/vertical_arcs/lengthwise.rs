@@ -5,7 +5,7 @@
 use super::quarter::{Lengthwise, Quarter};
 use super::roots::{Open, Root, Search};
 use super::sheet::{Parallel, SheetPoint};
-use super::{Directions, Place, ROUNDING, Rolling};
+use super::{ArcPlace, Directions, ROUNDING, Rolling};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use sweepsim_dexel::Source;
 
@@ -106,9 +106,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let off = 2.0 * slack * (1.0 + p.abs() / half);
         for sine in [sine, -sine] {
             let share = match self.place([q / r, sine], error) {
-                Place::Outside => continue,
-                Place::Near => return Err(Open),
-                Place::Inside(share) => share,
+                ArcPlace::Outside => continue,
+                ArcPlace::Near => return Err(Open),
+                ArcPlace::Inside(share) => share,
             };
             if !(half_chord_sq > 64.0 * doubt) {
                 return Err(Open);
@@ -226,9 +226,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         for half in [1.0, -1.0] {
             let sine = half * sine;
             let share = match self.place([cosine, sine], error) {
-                Place::Outside => continue,
-                Place::Near => return Err(Open),
-                Place::Inside(share) => share,
+                ArcPlace::Outside => continue,
+                ArcPlace::Near => return Err(Open),
+                ArcPlace::Inside(share) => share,
             };
             let v = half * at.v;
             let z = self.arc.centre[2] + r * sine + v;

@@ -7,7 +7,7 @@
 use super::crosswise::Crossing;
 use super::quarter::Quarter;
 use super::roots::{Open, Root, Search};
-use super::{Directions, Place, Rolling};
+use super::{ArcPlace, Directions, Rolling};
 use crate::cutter::outline::{Ball, Piece, Rim, Shape};
 use sweepsim_dexel::Source;
 
@@ -109,7 +109,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             for side in [1.0, -1.0] {
                 let direction = [side * q / distance, side * p / distance];
                 let share = match own.place(direction, error) {
-                    Place::Outside => continue,
+                    ArcPlace::Outside => continue,
                     place => place,
                 };
                 let off = distance - side * r;
@@ -117,7 +117,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 let Some(half) = own.half(square, 8.0 * slack * (big + slack))? else {
                     continue;
                 };
-                let Place::Inside(share) = share else { return Err(Open) };
+                let ArcPlace::Inside(share) = share else {
+                    return Err(Open);
+                };
                 let normal = [direction[0] * side * off, direction[1] * side * off, half];
                 let doubt = 4.0 * slack + r * error;
                 let [low, high] = ball.ends;
@@ -181,12 +183,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             let place = self.place([q / r, sine], error);
             let (height, wide) = (p - r * sine, END * slack + 2.0 * q.abs() * error);
             let outside = height < heights[0] - wide || height > heights[1] + wide;
-            if outside || matches!(place, Place::Outside) {
+            if outside || matches!(place, ArcPlace::Outside) {
                 continue;
             }
             let inside = height > heights[0] + wide && height < heights[1] - wide;
             match place {
-                Place::Inside(share) if inside => {
+                ArcPlace::Inside(share) if inside => {
                     let (half, normal, jump) = (radius, [0.0, 0.0, out], -1);
                     self.faces(line, &Face { half, normal, jump }, share);
                 }
@@ -210,14 +212,16 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             for cosine in [cosine, -cosine] {
                 let place = own.place([cosine, sine], error);
                 let (x, off) = (q - r * cosine, 2.0 * slack + r * error);
-                if matches!(place, Place::Outside) {
+                if matches!(place, ArcPlace::Outside) {
                     continue;
                 }
                 let square = (big - x) * (big + x);
                 let Some(half) = own.half(square, 4.0 * off * (big + off))? else {
                     continue;
                 };
-                let Place::Inside(share) = place else { return Err(Open) };
+                let ArcPlace::Inside(share) = place else {
+                    return Err(Open);
+                };
                 // The direction of the motion, on the edge outwards and along the axis.
                 let turn = own.arc.side();
                 let (across, along) = (-turn * sine * x / big, turn * cosine);
@@ -249,7 +253,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             let slack = own.slack.max(quarter.rounding());
             for span in &spans {
                 let crossing = Crossing::new(quarter, (own.arc.radius, slack), place, span.quadrant);
-                let Some([from, to]) = crossing.within(span.angles) else {
+                let Some([from, to]) = crossing.angles_between_ends(span.angles) else {
                     continue;
                 };
                 let search = Search {
@@ -273,14 +277,16 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     ) -> Result<(), Open> {
         let Root { at, error, grows } = root;
         let share = match self.place([at.c, at.s], error) {
-            Place::Outside => return Ok(()),
+            ArcPlace::Outside => return Ok(()),
             place => place,
         };
         let (square, doubt) = crossing.square(&at);
         let Some(half) = self.half(square, doubt)? else {
             return Ok(());
         };
-        let Place::Inside(share) = share else { return Err(Open) };
+        let ArcPlace::Inside(share) = share else {
+            return Err(Open);
+        };
         let normal = crossing.normal(&at, half);
         let jump = if grows { 1 } else { -1 };
         self.faces(line, &Face { half, normal, jump }, share);

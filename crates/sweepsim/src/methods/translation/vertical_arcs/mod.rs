@@ -23,6 +23,7 @@ mod roots;
 mod sheet;
 mod slice;
 
+use super::arc_place::ArcPlace;
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
@@ -128,15 +129,6 @@ struct Rolling<'a, 'b, S> {
     source: S,
 }
 
-/// What the ends of an arc say of a direction.
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    Outside,
-    Near,
-    /// With the share of the way.
-    Inside(f64),
-}
-
 /// The directions with a given cosine.
 #[derive(Clone, Copy, Debug)]
 enum Directions {
@@ -213,7 +205,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     fn turn(&self, towards: [f64; 2]) -> (f64, f64) {
         let top = if self.rates[0] > self.rates[1] { 1.0 } else { -1.0 };
         let share = match self.place(towards.map(|c| top * c), 0.0) {
-            Place::Inside(share) => share,
+            ArcPlace::Inside(share) => share,
             // At an end but for rounding.
             _ if (self.rates[0].abs()) < self.rates[1].abs() => 0.0,
             _ => 1.0,
@@ -245,21 +237,11 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// Where a direction is on the arc, whose angle is known up to an error.
-    fn place(&self, [c, s]: [f64; 2], error: f64) -> Place {
+    fn place(&self, [c, s]: [f64; 2], error: f64) -> ArcPlace {
         let arc = self.arc;
         let ([x, y], side) = (arc.from, arc.side());
-        // The turn from the start, as a complex number, and seen from the end.
-        let (cosine, sine) = (c * x + s * y, side * (s * x - c * y));
-        let (end_sine, end_cosine) = arc.angle.abs().sin_cos();
-        let end = sine * end_cosine - cosine * end_sine;
-        let error = error + ROUNDING;
-        if sine < -error || end > error {
-            Place::Outside
-        } else if sine > error && end < -error {
-            Place::Inside(sine.atan2(cosine) / arc.angle.abs())
-        } else {
-            Place::Near
-        }
+        let turn = [c * x + s * y, side * (s * x - c * y)];
+        ArcPlace::share(turn, arc.angle.abs(), error + ROUNDING)
     }
 
     /// The directions with a cosine that is known up to an error.
@@ -282,7 +264,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             // The value is this far from the extreme at most, and the angle the root of twice that.
             let wide = (2.0 * (66.0 * error)).sqrt() + ROUNDING;
             let place = self.place(extreme, wide.min(FRAC_PI_2));
-            return Directions::Level(!matches!(place, Place::Outside));
+            return Directions::Level(!matches!(place, ArcPlace::Outside));
         }
         let other = square.sqrt();
         Directions::Pair(other, 1.25 * error / other)

@@ -4,7 +4,7 @@
 
 use super::roots::{Open, Root, Search};
 use super::sheet::{Parallel, Sheet, SheetPoint};
-use super::{Directions, Place, ROUNDING, Rolling};
+use super::{ArcPlace, Directions, ROUNDING, Rolling};
 use sweepsim_dexel::Source;
 
 /// Directions of the arc that are this close to level may be on the other side.
@@ -109,9 +109,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             Directions::Pair(sine, error) => (side * sheet.up * sine, error),
         };
         let share = match self.place([cosine, sine], error) {
-            Place::Outside => return Ok(()),
-            Place::Near => return Err(Open),
-            Place::Inside(share) => share,
+            ArcPlace::Outside => return Ok(()),
+            ArcPlace::Near => return Err(Open),
+            ArcPlace::Inside(share) => share,
         };
         let z = self.arc.centre[2] + r * sine + sheet.height(&at);
         let jump = if (sine > 0.0) == grows { -1 } else { 1 };

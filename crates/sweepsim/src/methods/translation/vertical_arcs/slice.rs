@@ -1,7 +1,7 @@
 //! A tool whose axis is perpendicular to the arc's plane, along a level arc that is seen from its side: a line meets only the circle of the tool at the line's own height along
 //! the axis, which sweeps two circles about the arc's centre.
 
-use super::{Directions, Place, Rolling};
+use super::{ArcPlace, Directions, Rolling};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use crate::methods::translation::stretches::{Ring, Stretch};
 use sweepsim_dexel::Source;
@@ -103,12 +103,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         };
         for sine in [sine, -sine] {
             match self.place([cosine, sine], error) {
-                Place::Outside => {}
-                Place::Near => {
+                ArcPlace::Outside => {}
+                ArcPlace::Near => {
                     self.lines.open(line);
                     return;
                 }
-                Place::Inside(share) => {
+                ArcPlace::Inside(share) => {
                     let jump = if side * s * sine > 0.0 { -1 } else { 1 };
                     let across = side * ring.normal[0];
                     let normal = self.in_space([across * cosine, self.axis[1] * ring.normal[1], across * sine]);

@@ -1,6 +1,7 @@
 //! The search of a shell along a span, line by line.
 
 use super::{Falls, Meeting, Passage, Shell, Undecided};
+use crate::algebra::certain::certainly_within;
 use crate::methods::harvest::unit;
 use crate::methods::turning::axis_motion::AxisMotion;
 use crate::methods::turning::blocks::blocks;
@@ -258,7 +259,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 }
                 let point = shell.point(posed, meeting, (sheet, sample.rise, step), slack);
                 let way = (speed + sample.rise.abs()) * step.abs();
-                let inside = ends.hold(point.along, point.error + 2.0 * way)?;
+                let inside = certainly_within(point.along, ends, point.error + 2.0 * way)?;
                 // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
                 if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
                     return None;

@@ -2,6 +2,7 @@
 
 use super::super::cylinder::Cylinder;
 use super::*;
+use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -45,7 +46,7 @@ fn agrees<S: Shell>(
             }
             let g = meeting.g[sheet];
             let point = shell.point(posed, meeting, (sheet, 0.0, 0.0), 1e-14);
-            let held = shell.ends().hold(point.along, 1e-9);
+            let held = certainly_within(point.along, shell.ends(), 1e-9);
             if held == Some(true) {
                 prop_assert!(signs[sheet] != Sign::Absent && falls != Falls::Beyond);
                 prop_assert!(signs[sheet] != Sign::Positive || g > 0.0);
