@@ -1,7 +1,7 @@
 //! One chart: Newton's method in it, and where preimages can be.
 
 use super::about::Points;
-use super::faces::{Place, Searched};
+use super::faces::{BoxPlace, Searched};
 use super::linear::{Contraction, Linear};
 use super::neighbours::{Neighbours, Solution};
 use super::region::{Region, Witness};
@@ -91,7 +91,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         q: &[f64; N],
         witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-        found: &mut impl FnMut(SVector<f64, N>, Place, &Square<N>, [f64; N], P::Seen),
+        found: &mut impl FnMut(SVector<f64, N>, BoxPlace, &Square<N>, [f64; N], P::Seen),
     ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
@@ -141,7 +141,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                 };
                 if is_last {
                     let place = self.place(&next);
-                    if place != Place::Outside {
+                    if place != BoxPlace::Outside {
                         found(next, place, &scaled, from, sample.seen);
                         return Outcome::Settled;
                     }
@@ -168,8 +168,8 @@ impl<'a, const N: usize> Chart<'a, N> {
                 };
                 let is_near = (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]));
                 match self.place(&next) {
-                    Place::Outside if is_near => return Outcome::Settled,
-                    Place::Outside => return Outcome::Unclear,
+                    BoxPlace::Outside if is_near => return Outcome::Settled,
+                    BoxPlace::Outside => return Outcome::Unclear,
                     _ if linear.slack.amax() > HIDDEN => is_hidden = true,
                     place => {
                         found(next, place, &scaled, from, sample.seen);
@@ -211,8 +211,8 @@ impl<'a, const N: usize> Chart<'a, N> {
         (0..N).all(|i| (1.0 - next[i].abs()).abs() > step * step || step <= self.linear.slack[i])
     }
 
-    fn place(&self, s: &SVector<f64, N>) -> Place {
-        Place::of(s, self.linear, self.bounds, self.searched)
+    fn place(&self, s: &SVector<f64, N>) -> BoxPlace {
+        BoxPlace::of(s, self.linear, self.bounds, self.searched)
     }
 }
 

@@ -22,14 +22,14 @@ pub(super) struct Searched<'a, const N: usize> {
 
 /// Where a point is, for a box.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum BoxPlace {
     Inside,
     /// Near a face that another box shares, perhaps beyond it.
     AtFace,
     Outside,
 }
 
-impl Place {
+impl BoxPlace {
     /// Of a point in the coordinates of a box. Only its lower faces, and upper faces on the domain's boundary, belong to it, but it may claim a little more where another box of the part begins.
     pub fn of<const N: usize>(
         s: &SVector<f64, N>,
@@ -92,8 +92,8 @@ impl Faces {
     }
 
     /// Whether no other box has found this preimage of a target, which is remembered if it is at a face.
-    pub fn is_new<const N: usize>(&mut self, target: usize, x: &[f64; N], linear: &Linear<N>, place: Place) -> bool {
-        if place == Place::Inside && self.found.is_empty() {
+    pub fn is_new<const N: usize>(&mut self, target: usize, x: &[f64; N], linear: &Linear<N>, place: BoxPlace) -> bool {
+        if place == BoxPlace::Inside && self.found.is_empty() {
             return true;
         }
         let rounding: [f64; N] =
@@ -103,7 +103,7 @@ impl Faces {
             other.target == target && other.orientation == linear.orientation && (0..N).all(near)
         };
         let is_new = !self.found.iter().any(is_same);
-        if is_new && place == Place::AtFace {
+        if is_new && place == BoxPlace::AtFace {
             self.found.push(OnFace {
                 target,
                 orientation: linear.orientation,

@@ -25,7 +25,7 @@ struct Waiting {
 }
 
 /// What was found in a cell.
-struct Part {
+struct CellFindings {
     path: Vec<bool>,
     /// New crossings, numbered after those known to all parts.
     crossings: Vec<FaceCrossing>,
@@ -82,7 +82,7 @@ impl CurveSolver {
             };
             part.run((next.cell, next.depth), next.crossings, &cancel, &mut |_, _| {});
             monitor.advance(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-            Part {
+            CellFindings {
                 path: next.path,
                 crossings: part.crossings.split_off(known),
                 pieces: part.pieces,
@@ -117,7 +117,7 @@ fn breadth_first(
     root: Cell,
     first: Vec<usize>,
     monitor: &dyn Monitor,
-) -> (Vec<Waiting>, Vec<Part>) {
+) -> (Vec<Waiting>, Vec<CellFindings>) {
     let mut watch = Watch::new(&search.options);
     let mut lower = Cell::default();
     let mut parts = Vec::new();
@@ -160,9 +160,9 @@ fn breadth_first(
 }
 
 /// Moves what the search found to a part of its own.
-fn collect(search: &mut Search<'_>, path: Vec<bool>, parts: &mut Vec<Part>) {
+fn collect(search: &mut Search<'_>, path: Vec<bool>, parts: &mut Vec<CellFindings>) {
     let (pieces, open) = (std::mem::take(&mut search.pieces), std::mem::take(&mut search.open));
-    parts.push(Part {
+    parts.push(CellFindings {
         path,
         crossings: Vec::new(),
         pieces,

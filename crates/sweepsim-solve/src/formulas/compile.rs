@@ -13,12 +13,12 @@ use std::sync::Arc;
 
 /// A formula as a polynomial plus anything else, the latter a step of the expression.
 #[derive(Clone)]
-struct Part {
+struct SplitFormula {
     polynomial: Option<Rc<Polynomial>>,
     rest: Option<usize>,
 }
 
-impl Part {
+impl SplitFormula {
     fn polynomial(polynomial: Polynomial) -> Self {
         Self {
             polynomial: Some(Rc::new(polynomial)),
@@ -56,7 +56,7 @@ pub(super) fn equation(formula: &Formula, equation: usize, domain: &[Enclosure])
         equation,
         builder: ExpressionBuilder::default(),
     };
-    let mut known: BTreeMap<*const Node, Part> = BTreeMap::new();
+    let mut known: BTreeMap<*const Node, SplitFormula> = BTreeMap::new();
     let mut waiting = vec![formula];
     let mut last = None;
     while let Some(next) = waiting.last().copied() {
@@ -98,7 +98,7 @@ pub(super) fn equation(formula: &Formula, equation: usize, domain: &[Enclosure])
 }
 
 impl Compiler<'_> {
-    fn node(&mut self, node: &Node, operands: [Option<Part>; 2]) -> Result<Part, SystemError> {
+    fn node(&mut self, node: &Node, operands: [Option<SplitFormula>; 2]) -> Result<SplitFormula, SystemError> {
         let n = self.domain.len();
         match (node, operands) {
             (Node::Variable(number), _) if *number >= n => Err(SystemError::FormVariables {
@@ -106,9 +106,9 @@ impl Compiler<'_> {
                 variables: number.saturating_add(1),
                 expected: n,
             }),
-            (Node::Variable(number), _) => Ok(Part::polynomial(Polynomial::variable(*number, self.domain))),
+            (Node::Variable(number), _) => Ok(SplitFormula::polynomial(Polynomial::variable(*number, self.domain))),
             (Node::Constant(number), _) if !(number.value.hi + number.value.lo).is_finite() => Err(self.not_finite()),
-            (Node::Constant(number), _) => Ok(Part::polynomial(Polynomial::constant(n, *number))),
+            (Node::Constant(number), _) => Ok(SplitFormula::polynomial(Polynomial::constant(n, *number))),
             (Node::Add(..), [Some(a), Some(b)]) => self.add(&a, &b),
             (Node::Multiply(..), [Some(a), Some(b)]) => self.multiply(&a, &b),
             (Node::Divide(..), [Some(a), Some(b)]) => self.divide(&a, &b),
@@ -130,7 +130,7 @@ impl Compiler<'_> {
     }
 
     /// The part as one step of the expression.
-    fn step(&mut self, part: &Part) -> Result<usize, SystemError> {
+    fn step(&mut self, part: &SplitFormula) -> Result<usize, SystemError> {
         let Some(polynomial) = part.polynomial.as_deref() else {
             return Ok(part.rest.unwrap_or(0));
         };
@@ -147,13 +147,13 @@ impl Compiler<'_> {
         })
     }
 
-    fn add(&mut self, a: &Part, b: &Part) -> Result<Part, SystemError> {
+    fn add(&mut self, a: &SplitFormula, b: &SplitFormula) -> Result<SplitFormula, SystemError> {
         let polynomial = match (&a.polynomial, &b.polynomial) {
             (Some(p), Some(q)) => match p.add(q) {
                 Some(sum) => Some(Rc::new(sum)),
                 None => {
                     let (a, b) = (self.step(a)?, self.step(b)?);
-                    return Ok(Part::rest(self.builder.add(a, b)));
+                    return Ok(SplitFormula::rest(self.builder.add(a, b)));
                 }
             },
             (p, q) => p.clone().or_else(|| q.clone()),
@@ -162,14 +162,14 @@ impl Compiler<'_> {
             (Some(a), Some(b)) => Some(self.builder.add(a, b)),
             (a, b) => a.or(b),
         };
-        Ok(Part { polynomial, rest })
+        Ok(SplitFormula { polynomial, rest })
     }
 
-    fn multiply(&mut self, a: &Part, b: &Part) -> Result<Part, SystemError> {
+    fn multiply(&mut self, a: &SplitFormula, b: &SplitFormula) -> Result<SplitFormula, SystemError> {
         if let (Some(p), Some(q)) = (a.pure(), b.pure())
             && let Some(product) = p.multiply(q)
         {
-            return Ok(Part::polynomial(product));
+            return Ok(SplitFormula::polynomial(product));
         }
         // A factor that is a number goes to either part.
         for (factor, other) in [(a, b), (b, a)] {
@@ -180,38 +180,38 @@ impl Compiler<'_> {
                 continue;
             };
             let number = self.step(factor)?;
-            return Ok(Part {
+            return Ok(SplitFormula {
                 polynomial: Some(Rc::new(product)),
                 rest: Some(self.builder.multiply(number, rest)),
             });
         }
         let (a, b) = (self.step(a)?, self.step(b)?);
-        Ok(Part::rest(self.builder.multiply(a, b)))
+        Ok(SplitFormula::rest(self.builder.multiply(a, b)))
     }
 
-    fn divide(&mut self, a: &Part, b: &Part) -> Result<Part, SystemError> {
+    fn divide(&mut self, a: &SplitFormula, b: &SplitFormula) -> Result<SplitFormula, SystemError> {
         if let (Some(p), Some(number)) = (a.pure(), b.number())
             && let Some(quotient) = p.divide(number)
         {
-            return Ok(Part::polynomial(quotient));
+            return Ok(SplitFormula::polynomial(quotient));
         }
         let (a, b) = (self.step(a)?, self.step(b)?);
-        Ok(Part::rest(self.builder.divide(a, b)))
+        Ok(SplitFormula::rest(self.builder.divide(a, b)))
     }
 
-    fn apply(&mut self, function: Function, a: &Part) -> Result<Part, SystemError> {
+    fn apply(&mut self, function: Function, a: &SplitFormula) -> Result<SplitFormula, SystemError> {
         if let (Some(p), Function::Power(exponent)) = (a.pure(), function)
             && let Some(power) = p.power(exponent)
         {
-            return Ok(Part::polynomial(power));
+            return Ok(SplitFormula::polynomial(power));
         }
         if let Some(number) = a.number()
             && let Some(value) = function_of(function, number)
         {
-            return Ok(Part::polynomial(Polynomial::constant(self.domain.len(), value)));
+            return Ok(SplitFormula::polynomial(Polynomial::constant(self.domain.len(), value)));
         }
         let a = self.step(a)?;
-        Ok(Part::rest(self.builder.apply(function, a)))
+        Ok(SplitFormula::rest(self.builder.apply(function, a)))
     }
 }
 

@@ -15,7 +15,7 @@ const STEP: f64 = f64::from_bits((1023 - 94) << 52);
 
 /// One part of an equation.
 #[derive(Debug)]
-struct Part {
+struct EquationPart {
     equation: usize,
     /// Variables and degrees, the fastest first.
     axes: SmallVec<[(usize, usize); 4]>,
@@ -26,7 +26,7 @@ struct Part {
 #[derive(Debug)]
 pub(super) struct Expansion {
     n: usize,
-    parts: Vec<Part>,
+    parts: Vec<EquationPart>,
     /// Bounds, on the polydisc, of how far the powers' sums are from each equation, and their derivatives from its derivatives.
     pub value_error: Row,
     pub slope_error: Row,
@@ -75,7 +75,7 @@ impl Expansion {
             let arithmetic =
                 STEP * steps as f64 * (growth * 2f64.sqrt().powi(sum as i32) + largest * 2f64.powi(sum as i32));
             expansion.value_error[e] += arithmetic * (1.0 + 1e-9);
-            expansion.parts.push(Part {
+            expansion.parts.push(EquationPart {
                 equation: e,
                 axes: part.axes.iter().map(|a| (a.variable, a.degree)).collect(),
                 c: buffer.clone(),
@@ -146,7 +146,7 @@ impl Expansion {
         // Powers of each coordinate, as far as any part needs them.
         let mut raised: Vec<Vec<Series>> = Vec::with_capacity(self.n);
         for (variable, coordinate) in curve.iter().enumerate() {
-            let own = |p: &Part| p.axes.iter().find(|a| a.0 == variable).map_or(0, |a| a.1);
+            let own = |p: &EquationPart| p.axes.iter().find(|a| a.0 == variable).map_or(0, |a| a.1);
             let top = self.parts.iter().map(own).max().unwrap_or(0);
             let mut list = vec![Series::constant(powers, Double::new(1.0))];
             for k in 0..top {

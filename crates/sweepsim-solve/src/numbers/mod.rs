@@ -1,16 +1,16 @@
 //! Enclosures, double-double numbers, small matrices.
 
+mod domain_side;
 pub(crate) mod double;
 mod enclosure;
 mod matrix;
-mod place;
 mod rows;
 
+pub(crate) use domain_side::DomainSide;
 pub(crate) use double::Double;
 pub use enclosure::{Enclosure, EnclosureError};
 pub use matrix::MAX_UNKNOWNS;
 pub(crate) use matrix::{Row, Square, ZERO, apply, inverse};
-pub(crate) use place::Place;
 pub(crate) use rows::RowList;
 
 /// `2⁻⁵²`: twice the unit roundoff.

@@ -4,7 +4,7 @@ use super::error::SystemError;
 use super::expression::{Expression, Rows};
 use crate::Enclosure;
 use crate::coefficients::{Blend, Cell, Layout};
-use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Place, Row};
+use crate::numbers::{DomainSide, Double, EPSILON, MAX_UNKNOWNS, Row};
 use smallvec::SmallVec;
 use sweepsim_spline::{Bernstein, BernsteinError, RationalBernstein};
 
@@ -108,7 +108,7 @@ impl From<&Bernstein> for Equation {
 pub struct System {
     pub(crate) layout: Layout,
     pub(crate) domain: SmallVec<[Enclosure; 4]>,
-    places: SmallVec<[Place; 4]>,
+    sides: SmallVec<[DomainSide; 4]>,
     /// The region to search, in coordinates in which the domain is `[0,1]ⁿ`.
     pub(crate) region: (Row, Row),
     /// Whether some equation is known only on the domain.
@@ -178,7 +178,7 @@ impl System {
         Ok(Self {
             layout,
             domain: domain.into(),
-            places: domain.iter().map(|side| Place::new(*side)).collect(),
+            sides: domain.iter().map(|side| DomainSide::new(*side)).collect(),
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded,
         })
@@ -230,7 +230,7 @@ impl System {
         Self {
             layout,
             domain: SmallVec::from_elem(Enclosure::UNIT, n),
-            places: SmallVec::from_elem(Place::UNIT, n),
+            sides: SmallVec::from_elem(DomainSide::UNIT, n),
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded: self.bounded,
         }
@@ -271,14 +271,14 @@ impl System {
 
     /// An inner box in the domain's coordinates, rounded outwards.
     pub(crate) fn outward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
-        let bounds = |(j, place): (usize, &Place)| Enclosure::hull(place.below(lo[j]), place.above(hi[j]));
-        self.places.iter().enumerate().map(bounds).collect()
+        let bounds = |(j, side): (usize, &DomainSide)| Enclosure::hull(side.below(lo[j]), side.above(hi[j]));
+        self.sides.iter().enumerate().map(bounds).collect()
     }
 
     /// An inner box in the domain's coordinates, rounded inwards; `None` if no numbers are left on some side.
     pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Option<Vec<Enclosure>> {
-        let bounds = |(j, place): (usize, &Place)| Enclosure::new(place.above(lo[j]), place.below(hi[j])).ok();
-        self.places.iter().enumerate().map(bounds).collect()
+        let bounds = |(j, side): (usize, &DomainSide)| Enclosure::new(side.above(lo[j]), side.below(hi[j])).ok();
+        self.sides.iter().enumerate().map(bounds).collect()
     }
 
     /// Length of a side of the domain.

@@ -11,7 +11,7 @@ const SLACK: f64 = f64::from_bits((1023 - 90) << 52);
 
 /// A side of a domain.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct DomainSide {
     side: Enclosure,
     /// The lower end and the width, at a scale that neither overflows nor underflows.
     lo: Double,
@@ -21,7 +21,7 @@ pub(crate) struct Place {
     slack: f64,
 }
 
-impl Place {
+impl DomainSide {
     /// The place of `[0, 1]`, whose numbers stay as they are.
     pub(crate) const UNIT: Self = Self {
         side: Enclosure::UNIT,
@@ -128,7 +128,7 @@ mod tests {
             let (a, b) = (lo as f64 * scale, hi as f64 * scale);
             // In units of 2^(shift − 40).
             let exact = (lo << 40) + (hi - lo) * s;
-            let place = Place::new(Enclosure::new(a, b).unwrap());
+            let place = DomainSide::new(Enclosure::new(a, b).unwrap());
             let s = s as f64 / (1u64 << 40) as f64;
             let (below, above) = (place.below(s), place.above(s));
             // Exact: the numbers have at most 53 bits, and the shift to integers is by a power of two.
@@ -149,7 +149,7 @@ mod tests {
             (0.0, 1e-290),
             (1e8, 1e8 + 1.0),
         ] {
-            let place = Place::new(Enclosure::new(lo, hi).unwrap());
+            let place = DomainSide::new(Enclosure::new(lo, hi).unwrap());
             let mut before = lo;
             for k in 0..=64 {
                 let s = f64::from(k) / 64.0;
