@@ -130,7 +130,7 @@ mod tests {
 
     const SIZE: Size = Size {
         spacing: [0.1; 2],
-        slack: 64.0 * f64::EPSILON * 10.0,
+        system_rounding: 64.0 * f64::EPSILON * 10.0,
     };
 
     proptest! {

@@ -89,7 +89,7 @@ fn is_beside(
     let rows = [0, 1].map(|r| times.rows(piece, r));
     let (ends, off) = times.chord(piece);
     let from = ends.map(|end| [line[0] - end[0], line[1] - end[1]]);
-    let uncertain = off.map(|off| off + 2.0 * size.slack);
+    let uncertain = off.map(|off| off + 2.0 * size.system_rounding);
     is_separate(rows, &cells.position(element, cell), &from, uncertain)
 }
 
@@ -97,10 +97,17 @@ fn is_beside(
 pub(super) fn arm(position: &Triples, (times, size): (&Times, &Size), piece: u32, lines: [Range; 2]) -> [Range; 3] {
     let from_tip = |r: usize| {
         let (lo, hi) = times.tip(piece, r);
-        (lines[r].0 - hi - size.slack, lines[r].1 - lo + size.slack)
+        (
+            lines[r].0 - hi - size.system_rounding,
+            lines[r].1 - lo + size.system_rounding,
+        )
     };
     let (lo, hi) = products(times.rows(piece, 2), position);
-    [from_tip(0), from_tip(1), (lo - size.slack, hi + size.slack)]
+    [
+        from_tip(0),
+        from_tip(1),
+        (lo - size.system_rounding, hi + size.system_rounding),
+    ]
 }
 
 /// Whether the cell's points differ from the end of the arm in a direction that is fixed in the tool.
@@ -113,7 +120,7 @@ fn is_off(
 ) -> bool {
     let seen = seen(times, piece, arm, direction);
     let own = products(&[*direction], &cells.position(element, cell));
-    let error = 2.0 * size.slack;
+    let error = 2.0 * size.system_rounding;
     seen.0 > own.1 + error || seen.1 < own.0 - error
 }
 
@@ -217,7 +224,7 @@ mod tests {
 
     const SIZE: Size = Size {
         spacing: [0.1; 2],
-        slack: 64.0 * f64::EPSILON * 50.0,
+        system_rounding: 64.0 * f64::EPSILON * 50.0,
     };
 
     fn tool(kind: usize) -> Tool {

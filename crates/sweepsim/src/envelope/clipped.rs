@@ -40,7 +40,7 @@ pub(super) fn clipped(
     let normal = Vector3::from(middle_normal(element, cells, cell)?);
     let across = (normal - along * normal.dot(&along)).try_normalize(1e-3)?;
     let arm = arm(&points, (times, size), piece, lines);
-    let margin = ROUNDINGS * size.slack;
+    let margin = ROUNDINGS * size.system_rounding;
     let bands: [Option<Band>; 2] = [across, along.cross(&across)].map(|direction| {
         let direction = direction.into();
         let (own, (lo, hi)) = (products(&[direction], &points), seen(times, piece, &arm, &direction));
@@ -170,7 +170,7 @@ mod tests {
         /// as a line's distance allows, and each holds the point through which the line has been chosen.
         #[test]
         fn cells_about_a_point_of_contact_shrink_to_the_scale_of_the_distance(size in -8.0..-1.0, way in [0.0..1.0, 0.0..1.0], t in 0.0..1.0) {
-            const SLACK: f64 = 64.0 * f64::EPSILON * 10.0;
+            const ROUNDING: f64 = 64.0 * f64::EPSILON * 10.0;
             const STEPS: usize = 6;
             let poses = [0.3, -0.2].map(|side| Pose::new([0.0, 0.0, 5.0 * side], [side, 1.0, 0.0]).unwrap());
             let segment = Path::with_law(poses.into(), Law::Slerp).unwrap().segments(0, 10.0, 1e-6).remove(0);
@@ -182,7 +182,7 @@ mod tests {
                     element,
                     cells: &mut cells,
                     times: &mut times,
-                    size: Size { spacing: [0.1; 2], slack: SLACK },
+                    size: Size { spacing: [0.1; 2], system_rounding: ROUNDING },
                 };
                 for tip in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
                     let from_line = |map: &PatchMap, at: [f64; 2]| {
@@ -205,7 +205,7 @@ mod tests {
                         part = left.unwrap_or(part);
                         prop_assert!((0..2).all(|k| part[k].contains(place[k])));
                     }
-                    let reach = 16.0 * (distance + 2.0 * ROUNDINGS * SLACK).sqrt();
+                    let reach = 16.0 * (distance + 2.0 * ROUNDINGS * ROUNDING).sqrt();
                     let far = |k: usize| (part[k].lo() - tip[k]).abs().max((part[k].hi() - tip[k]).abs());
                     prop_assert!((0..2).all(|k| far(k) < reach), "{part:?} {reach}");
                 }

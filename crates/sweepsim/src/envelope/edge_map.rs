@@ -143,6 +143,6 @@ impl ChartMap<2> for EdgeMap<'_> {
     }
 
     fn rounding(&self) -> [f64; 2] {
-        [self.size.slack; 2]
+        [self.size.system_rounding; 2]
     }
 }

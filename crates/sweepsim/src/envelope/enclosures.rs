@@ -25,8 +25,8 @@ pub(super) fn interval((lo, hi): (f64, f64)) -> Enclosure {
 pub(crate) struct Size {
     /// Distance between neighbouring lines.
     pub spacing: [f64; 2],
-    /// Rounding of a coordinate.
-    pub slack: f64,
+    /// The rounding error of a coordinate that all systems allow for.
+    pub system_rounding: f64,
 }
 
 /// A function near a point: its value and its derivatives there.
@@ -107,11 +107,11 @@ pub(super) fn plane_values(
     [0, 1].map(|r| {
         if let Some([offsets, _]) = times.offsets(piece, r) {
             let (lo, hi) = shifted_products(times.rows(piece, r), offsets, &position);
-            return Enclosure::hull(lo - size.slack, hi + size.slack);
+            return Enclosure::hull(lo - size.system_rounding, hi + size.system_rounding);
         }
         let (lo, hi) = products(times.rows(piece, r), &position);
         let (a, b) = times.tip(piece, r);
-        Enclosure::hull(lo + a - size.slack, hi + b + size.slack)
+        Enclosure::hull(lo + a - size.system_rounding, hi + b + size.system_rounding)
     })
 }
 

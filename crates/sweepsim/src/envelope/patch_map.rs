@@ -243,15 +243,15 @@ impl ChartMap<3> for PatchMap<'_> {
     }
 
     fn rounding(&self) -> [f64; 3] {
-        let slack = self.size.slack;
-        [slack, slack, envelope_error(self.element, self.times)]
+        let rounding = self.size.system_rounding;
+        [rounding, rounding, envelope_error(self.element, self.times)]
     }
 
     fn rounding_in(&self, cell: &Brick) -> [f64; 3] {
-        let slack = self.size.slack;
+        let rounding = self.size.system_rounding;
         [
-            slack,
-            slack,
+            rounding,
+            rounding,
             envelope_error_in(self.element, self.cells, self.times, cell.0),
         ]
     }
@@ -266,7 +266,7 @@ mod tests {
 
     const SIZE: Size = Size {
         spacing: [0.1; 2],
-        slack: 64.0 * f64::EPSILON * 50.0,
+        system_rounding: 64.0 * f64::EPSILON * 50.0,
     };
 
     /// A smooth tip, a quarter of the way round: the side `v = 0` is a point, the tangent plane there is level.

@@ -137,7 +137,7 @@ impl<'a> PlacedMap<'a> {
         let position = self.cells.position(self.element, cell);
         [0, 1].map(|r| {
             let (lo, hi) = products(&self.row(r), &position);
-            (lo - self.size.slack, hi + self.size.slack)
+            (lo - self.size.system_rounding, hi + self.size.system_rounding)
         })
     }
 
@@ -194,7 +194,7 @@ impl ChartMap<2> for PlacedMap<'_> {
             rows.each_ref().map(|row| &row[..]),
             &position,
             &[from],
-            [2.0 * self.size.slack; 2],
+            [2.0 * self.size.system_rounding; 2],
         )
     }
 
@@ -285,6 +285,6 @@ impl ChartMap<2> for PlacedMap<'_> {
     }
 
     fn rounding(&self) -> [f64; 2] {
-        [self.size.slack; 2]
+        [self.size.system_rounding; 2]
     }
 }

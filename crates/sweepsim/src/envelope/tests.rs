@@ -153,7 +153,7 @@ fn segment(ends: [[f64; 6]; 2]) -> Segment {
 fn size() -> Size {
     Size {
         spacing: [0.5; 2],
-        slack: 64.0 * f64::EPSILON * 50.0,
+        system_rounding: 64.0 * f64::EPSILON * 50.0,
     }
 }
 

@@ -267,7 +267,7 @@ mod tests {
 
     const SIZE: Size = Size {
         spacing: [1.0; 2],
-        slack: 1e-12,
+        system_rounding: 1e-12,
     };
 
     /// `X`, `Y` of forms at a point.

@@ -72,7 +72,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             lines: self.lines,
             harvest,
         };
-        let slack = translation::slack(self.size.slack);
+        let slack = translation::slack(self.size.system_rounding);
         let done = &mut space.done.placed;
         let part = &self.parts[at];
         if translation::stands(part) {

@@ -103,7 +103,12 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
         if let Some(arc) = arc_about_axis {
-            let arc = (arc, segment, translation::slack(self.size.slack), self.height_tolerance);
+            let arc = (
+                arc,
+                segment,
+                translation::slack(self.size.system_rounding),
+                self.height_tolerance,
+            );
             translation::sweep_arc_about_axis(outline, arc, &mut collector, by_share, settled);
             return;
         }
@@ -112,15 +117,15 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             let arc = (
                 vertical_arc,
                 segment,
-                translation::slack(self.size.slack),
+                translation::slack(self.size.system_rounding),
                 self.height_tolerance,
             );
             translation::sweep_vertical_arc(outline, arc, collector, by_share, settled);
             return;
         }
         let heading = match level_arc {
-            Some(level_arc) => Heading::around(level_arc, segment, self.size.slack),
-            None => Heading::new(segment, self.size.slack),
+            Some(level_arc) => Heading::around(level_arc, segment, self.size.system_rounding),
+            None => Heading::new(segment, self.size.system_rounding),
         };
         let Some(heading) = heading else { return };
         match level_arc {
@@ -142,7 +147,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                 harvest,
             },
             ceiling: self.ceiling,
-            slack: self.size.slack,
+            system_rounding: self.size.system_rounding,
             height_tolerance: self.height_tolerance,
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
@@ -193,7 +198,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     pub(super) fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {
         Searching {
             collector,
-            slack: translation::slack(self.size.slack),
+            slack: translation::slack(self.size.system_rounding),
             height_tolerance: self.height_tolerance,
         }
     }
@@ -252,8 +257,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// Whether any line passes near the segment.
     fn reaches(&self, segment: &Segment) -> bool {
-        let margin =
-            |k: usize| self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lines.shift[k].abs();
+        let margin = |k: usize| {
+            self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.system_rounding + self.lines.shift[k].abs()
+        };
         comes_near(segment, self.lines.window(), [margin(0), margin(1)])
     }
 

@@ -59,7 +59,7 @@ impl Plan {
             ceiling: None,
             size: Size {
                 spacing: grid.spacing(),
-                slack: self.tolerances.rounding(),
+                system_rounding: self.tolerances.rounding(),
             },
             spaces: Arc::default(),
             lists: Arc::default(),
@@ -161,7 +161,7 @@ impl SweepJob<'_> {
         Over {
             cylinder: self.tool.bounding_cylinder(),
             window: lines.window(),
-            margin: self.size.slack + 1e-6 * self.cutter.reach,
+            margin: self.size.system_rounding + 1e-6 * self.cutter.reach,
         }
     }
 
@@ -239,7 +239,7 @@ impl SweepJob<'_> {
                 lines: &lines,
                 harvest: &mut harvest,
             };
-            translation::close(ceiling, chunk, self.size.slack, &mut collector);
+            translation::close(ceiling, chunk, self.size.system_rounding, &mut collector);
             all.add(harvest);
         }
         Ok(all)

@@ -240,8 +240,8 @@ struct Counts {
 }
 
 /// Adds a crossing at the ceiling to each line that is covered there, which takes the count back to 0.
-pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines: &mut Collector) {
-    let slack = slack(rounding);
+pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], system_rounding: f64, lines: &mut Collector) {
+    let slack = slack(system_rounding);
     let tips = |part: &PathPart| part.segment.tips().map(|tip| ceiling.disc(tip));
     let around: Vec<Around> = parts.iter().filter_map(|part| ceiling.around(part, slack)).collect();
     let moves: Vec<Capsule> = parts

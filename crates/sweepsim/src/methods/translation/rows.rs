@@ -15,7 +15,7 @@ pub(super) struct Floor {
     /// A unit vector.
     pub ahead: [f64; 2],
     /// The rounding error of coordinates.
-    pub slack: f64,
+    pub rounding: f64,
 }
 
 /// Lines of one column of the lattice (the same `x`), next to each other.
@@ -90,7 +90,7 @@ pub(super) fn rows(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2], mut vi
 /// Visits rows until `visit` returns true.
 #[inline]
 fn search(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row) -> bool) -> bool {
-    let margin = 2.0 * floor.slack;
+    let margin = 2.0 * floor.rounding;
     let [p, q] = [p, q].map(|[low, high]| [low - margin, high + margin]);
     let [ux, uy] = floor.ahead;
     let spread = |a: f64, [low, high]: [f64; 2]| {

@@ -108,7 +108,7 @@ fn floor(heading: &Heading) -> Floor {
     Floor {
         tip: heading.tip,
         ahead: heading.ahead,
-        slack: heading.slack,
+        rounding: heading.slack,
     }
 }
 

@@ -251,7 +251,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let floor = Floor {
             tip: arc.centre,
             ahead: arc.ahead,
-            slack: self.slack,
+            rounding: self.slack,
         };
         let lattice = self.lines.lines;
         let right = [-y[1] - margin, margin - y[0]];

@@ -17,7 +17,7 @@ pub(super) struct Lune {
     radius: f64,
     /// The sign of `h`.
     half: f64,
-    slack: f64,
+    line_error: f64,
     /// The distance of lines along a column.
     spacing: f64,
     sides: [Option<Slice>; 2],
@@ -58,8 +58,8 @@ impl Marks {
 }
 
 impl Lune {
-    /// `slack`: how far a line may be off; `half`: the sign of `h`.
-    pub fn new(radius: f64, half: f64, sides: &[Neighbour; 2], slack: f64, spacing: f64) -> Self {
+    /// `line_error`: how far a line may be off; `half`: the sign of `h`.
+    pub fn new(radius: f64, half: f64, sides: &[Neighbour; 2], line_error: f64, spacing: f64) -> Self {
         // Beyond the rim, |h| is at least `√(RIM spacing R)` with R ≥ spacing; so the normal turns by no more than this with a line, times the radius.
         let bend = radius / (RIM.sqrt() * spacing);
         let slice = |side: &Neighbour| match *side {
@@ -72,14 +72,14 @@ impl Lune {
                     way,
                     square,
                     size: square.sqrt(),
-                    error: 4.0 * (slack * ((x + y) * (1.0 + bend) + z * bend) + rounding),
+                    error: 4.0 * (line_error * ((x + y) * (1.0 + bend) + z * bend) + rounding),
                 })
             }
         };
         Self {
             radius,
             half,
-            slack,
+            line_error,
             spacing,
             sides: [slice(&sides[0]), slice(&sides[1])],
         }
@@ -113,7 +113,7 @@ impl Lune {
                 return None;
             }
             let w = rest.sqrt();
-            let off = 2.0 * error * reach / w + 8.0 * self.slack;
+            let off = 2.0 * error * reach / w + 8.0 * self.line_error;
             if !(off < 0.25 * self.spacing) {
                 return None;
             }
@@ -130,7 +130,7 @@ impl Lune {
 
     /// How far from an end of a column in the ball at `y`, or at the edge of a hole there, lines are looked at in any case.
     pub fn margin(&self, y: f64) -> Option<f64> {
-        let margin = RIM * self.spacing + 8.0 * self.slack * (1.0 + self.radius / y.abs());
+        let margin = RIM * self.spacing + 8.0 * self.line_error * (1.0 + self.radius / y.abs());
         (margin < 0.25 * self.spacing).then_some(margin)
     }
 }
@@ -153,10 +153,10 @@ mod tests {
         #[test]
         fn signs_change_at_marks_alone(
             sides in [side(), side()], radius in 0.5..20.0_f64, half in prop::sample::select(vec![-1.0, 1.0]),
-            x in -1.0..1.0_f64, lines in 3..60_i32, slack in prop::sample::select(vec![1e-15, 1e-13, 1e-11])
+            x in -1.0..1.0_f64, lines in 3..60_i32, line_error in prop::sample::select(vec![1e-15, 1e-13, 1e-11])
         ) {
             let (spacing, x) = (2.0 * radius / f64::from(lines), x * radius);
-            let lune = Lune::new(radius, half, &sides, slack * radius, spacing);
+            let lune = Lune::new(radius, half, &sides, line_error * radius, spacing);
             let column = (radius * radius - x * x).sqrt();
             let (Some(marks), Some(margin)) = (lune.marks(x), lune.margin(column)) else { return Ok(()) };
             let value = |way: &[f64; 3], y: f64| x * way[0] + y * way[1] + half * (column * column - y * y).sqrt() * way[2];
@@ -171,7 +171,7 @@ mod tests {
                 for side in &sides {
                     if let Neighbour::Along(way) = side {
                         let (g, size) = (value(way, y), way[0].abs() + way[1].abs() + way[2].abs());
-                        prop_assert!(g.abs() > slack * radius * size, "{y} {g} {marks:?}");
+                        prop_assert!(g.abs() > line_error * radius * size, "{y} {g} {marks:?}");
                         signs.push(g < 0.0);
                     }
                 }

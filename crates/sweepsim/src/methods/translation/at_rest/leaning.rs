@@ -52,7 +52,11 @@ pub(crate) fn leaning(
     }
     let (ahead, k) = ([axis[0] / s, axis[1] / s], axis[2]);
     let mut leaning = Leaning {
-        floor: Floor { tip, ahead, slack },
+        floor: Floor {
+            tip,
+            ahead,
+            rounding: slack,
+        },
         tilt: [s, k],
         sides: sides.map(|side| match side {
             Neighbour::Beyond(negative) => AtRestSide::Beyond(negative),
@@ -103,7 +107,7 @@ pub(super) enum Points {
 impl Leaning<'_, '_> {
     /// `None` if there is no closed form.
     fn piece(&mut self, piece: &Piece) -> Option<()> {
-        let ([s, k], slack) = (self.tilt, self.floor.slack);
+        let ([s, k], slack) = (self.tilt, self.floor.rounding);
         let [from, to] = [piece.from, piece.to];
         let radii = [from[0].min(to[0]), from[0].max(to[0])];
         let heights = [from[1].min(to[1]), from[1].max(to[1])];
@@ -226,7 +230,7 @@ impl Leaning<'_, '_> {
         let lattice = self.lines.lines;
         let floor = self.floor;
         let [ux, uy] = floor.ahead;
-        let margin = 8.0 * floor.slack;
+        let margin = 8.0 * floor.rounding;
         let [across, along] = ranges.map(|[low, high]| [low - margin, high + margin]);
         rows(lattice, &floor, ranges, |Row { i, j, x }| {
             for j in j[0]..=j[1] {

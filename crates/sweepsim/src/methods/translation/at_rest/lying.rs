@@ -32,7 +32,7 @@ impl Leaning<'_, '_> {
 
     /// A part of a stretch, within a wedge if there is one, which may be one of many.
     fn rings(&mut self, stretch: &Stretch, part: &HeightRange, wedge: Option<(&Wedge, bool)>) {
-        let ([s, _], slack) = (self.tilt, self.floor.slack);
+        let ([s, _], slack) = (self.tilt, self.floor.rounding);
         let reach = stretch.radii[1];
         let across = wedge.map_or([-reach, reach], |(wedge, _)| wedge.across(stretch.radii));
         let [low, high] = [0, 1].map(|k| s * stretch.heights[k].clamp(part.heights[0], part.heights[1]));

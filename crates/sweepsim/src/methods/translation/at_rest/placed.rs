@@ -153,28 +153,28 @@ impl Placed<'_, '_> {
         {
             return;
         }
-        let (slack, tx) = (2.0 * self.slack, self.tip[0]);
-        let inner = if inner <= slack { -1.0 } else { inner };
+        let (line_error, tx) = (2.0 * self.slack, self.tip[0]);
+        let inner = if inner <= line_error { -1.0 } else { inner };
         let lattice = self.lines.lines;
         let [across, along] = lattice.grid.spacing();
         let lune = match radial {
             Radial::Arc {
                 centre, radius, half, ..
-            } if centre[0] == 0.0 => Some(Lune::new(*radius, *half, &self.sides, slack, along)),
+            } if centre[0] == 0.0 => Some(Lune::new(*radius, *half, &self.sides, line_error, along)),
             _ => None,
         };
-        let reach = outer + slack;
+        let reach = outer + line_error;
         let Some([first, last]) = numbers(lattice, 0, [tx - reach, tx + reach]) else {
             return;
         };
-        let stretch = Stretch::new(radial, [inner, outer], slack, &self.sides);
+        let stretch = Stretch::new(radial, [inner, outer], line_error, &self.sides);
         for i in first..=last {
             let x = lattice.coordinate(0, i) - tx;
-            let half = (reach * reach - x * x).max(0.0).sqrt() + slack;
+            let half = (reach * reach - x * x).max(0.0).sqrt() + line_error;
             // The hole in the middle.
-            let free = inner - slack;
+            let free = inner - line_error;
             let gap = if free > x.abs() {
-                (free * free - x * x).sqrt() - slack
+                (free * free - x * x).sqrt() - line_error
             } else {
                 -1.0
             };
@@ -221,7 +221,7 @@ impl Placed<'_, '_> {
         for [y, off] in inner.chain([&end]).copied() {
             let middle = 0.5 * (from + y);
             let rho = x.hypot_fast(middle);
-            let (certain, change) = self.change(&stretch.at(rho), [x, middle], rho, stretch.slack);
+            let (certain, change) = self.change(&stretch.at(rho), [x, middle], rho, stretch.line_error);
             let begin = if certain && change == 0 { y - off } else { from };
             self.lines(stretch, (i, x), [begin, y + off], next);
             from = y;
@@ -233,7 +233,10 @@ impl Placed<'_, '_> {
         let [_, ty, tz] = self.tip;
         let lattice = self.lines.lines;
         let Stretch {
-            inner, outer, slack, ..
+            inner,
+            outer,
+            line_error,
+            ..
         } = *stretch;
         let Some([low, high]) = numbers(lattice, 1, range.map(|y| ty + y)) else {
             return;
@@ -241,11 +244,11 @@ impl Placed<'_, '_> {
         for j in low.max(*next)..=high {
             let y = lattice.coordinate(1, j) - ty;
             let rho = x.hypot_fast(y);
-            if rho < inner - slack || rho > outer + slack || stretch.same([x, y], rho) {
+            if rho < inner - line_error || rho > outer + line_error || stretch.same([x, y], rho) {
                 continue;
             }
             let point = stretch.at(rho);
-            let (certain, change) = self.change(&point, [x, y], rho, slack);
+            let (certain, change) = self.change(&point, [x, y], rho, line_error);
             if certain && change == 0 {
                 continue;
             }
@@ -253,7 +256,7 @@ impl Placed<'_, '_> {
                 continue;
             }
             let line = lattice.line(i, j);
-            if !certain || rho < inner + slack || rho > outer - slack {
+            if !certain || rho < inner + line_error || rho > outer - line_error {
                 self.lines.open(line);
                 continue;
             }
@@ -268,7 +271,7 @@ impl Placed<'_, '_> {
 
     /// Whether the signs of `g` before and after are certain, and the difference `[g₊ < 0] − [g₋ < 0]`.
     #[inline]
-    fn change(&self, point: &StretchPoint, [x, y]: [f64; 2], rho: f64, slack: f64) -> (bool, i8) {
+    fn change(&self, point: &StretchPoint, [x, y]: [f64; 2], rho: f64, line_error: f64) -> (bool, i8) {
         let [n_rho, n_zeta] = point.normal;
         let ratio = if rho > 0.0 { n_rho / rho } else { 0.0 };
         let mut certain = true;
@@ -279,8 +282,8 @@ impl Placed<'_, '_> {
                 let g = out + n_zeta * dz;
                 // As the normal turns, its part across the axis changes with the other one: hardly where a wall is widest.
                 let turned = point.bend * n_zeta.abs();
-                let error = (dx.abs() + dy.abs()) * (slack * (ratio.abs() + turned) + 8.0 * f64::EPSILON)
-                    + dz.abs() * (slack * point.bend + 8.0 * f64::EPSILON);
+                let error = (dx.abs() + dy.abs()) * (line_error * (ratio.abs() + turned) + 8.0 * f64::EPSILON)
+                    + dz.abs() * (line_error * point.bend + 8.0 * f64::EPSILON);
                 let sure = n_rho == 0.0 || g.abs() > error;
                 (sure, i8::from(g < 0.0))
             }

@@ -22,15 +22,15 @@ pub(super) struct Stretch<'a> {
     /// Negative without a hole.
     pub inner: f64,
     pub outer: f64,
-    pub slack: f64,
+    pub line_error: f64,
     /// Both moves, each with a bound of the error in [`same`](Self::same).
     ways: Option<[([f64; 3], f64); 2]>,
 }
 
 impl<'a> Stretch<'a> {
-    pub fn new(radial: &'a Radial, [inner, outer]: [f64; 2], slack: f64, sides: &[Neighbour; 2]) -> Self {
+    pub fn new(radial: &'a Radial, [inner, outer]: [f64; 2], line_error: f64, sides: &[Neighbour; 2]) -> Self {
         // Of the normal, times the distance from the axis; see `change`.
-        let off = slack
+        let off = line_error
             * match radial {
                 Radial::Line { normal, .. } => normal[0].abs(),
                 Radial::Arc { radius, .. } => 1.0 + outer / radius,
@@ -44,7 +44,7 @@ impl<'a> Stretch<'a> {
             radial,
             inner,
             outer,
-            slack,
+            line_error,
             ways: way(&sides[0])
                 .zip(way(&sides[1]))
                 .map(|(before, after)| [before, after]),

@@ -54,19 +54,19 @@ pub(crate) fn stands(part: &PathPart) -> bool {
 
 /// The rounding error of the coordinates that closed forms compute, products of a few rounded numbers, from the one that all systems allow for: a
 /// quarter of it, or 16 roundings of the largest coordinate.
-pub(crate) fn slack(rounding: f64) -> f64 {
-    0.25 * rounding
+pub(crate) fn slack(system_rounding: f64) -> f64 {
+    0.25 * system_rounding
 }
 
 impl Heading {
-    /// `None` for moves that turn, or have too little travel across the dexels. `rounding`: the rounding error that all systems allow for.
-    pub fn new(segment: &Segment, rounding: f64) -> Option<Self> {
+    /// `None` for moves that turn, or have too little travel across the dexels. `system_rounding`: the rounding error that all systems allow for.
+    pub fn new(segment: &Segment, system_rounding: f64) -> Option<Self> {
         if !segment.is_arc() || segment.turns().len() != 1 {
             return None;
         }
         let turn = segment.start();
         let way: Vector3<f64> = segment.travel().into();
-        let slack = slack(rounding);
+        let slack = slack(system_rounding);
         let length = way.x.hypot(way.y);
         let own = turned_back(&turn, &way);
         let across = own.x.hypot(own.y);
@@ -99,8 +99,8 @@ impl Heading {
     }
 
     /// The tangent of an arc, as long as the arc. `None` if it is too short.
-    pub fn around(level_arc: &LevelArc, segment: &Segment, rounding: f64) -> Option<Self> {
-        let (slack, length) = (slack(rounding), level_arc.length());
+    pub fn around(level_arc: &LevelArc, segment: &Segment, system_rounding: f64) -> Option<Self> {
+        let (slack, length) = (slack(system_rounding), level_arc.length());
         let rise = segment.travel()[2];
         (length > SHORTEST * slack && rise.is_finite()).then(|| Self {
             tip: segment.tips()[0],

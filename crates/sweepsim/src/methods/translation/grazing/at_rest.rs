@@ -156,7 +156,7 @@ impl Search<'_, '_> {
 
     fn examined(&mut self, cell: u32, depth: u32) -> Known {
         self.looks += 1;
-        let slack = self.map.rounding();
+        let rounding = self.map.rounding();
         // All of this is the same wherever the tip is, so that it does not depend on where it was first.
         let place = self.map.ranges(cell);
         let jacobian = self
@@ -166,7 +166,7 @@ impl Search<'_, '_> {
         let bounds = self.map.bounds(&cell);
         let corners = [bounds.map(Enclosure::lo), bounds.map(Enclosure::hi)];
         let sides = bounds.map(|side| 2.0 * side.radius());
-        match Chart::new(corners, &jacobian, &[[0.0; 2]; 2], slack, jacobian[0]) {
+        match Chart::new(corners, &jacobian, &[[0.0; 2]; 2], rounding, jacobian[0]) {
             Ok(chart) => {
                 let centre = self.map.seen_from_tip(chart.point([0.0; 2]));
                 let across = |axis: usize| {
@@ -191,8 +191,8 @@ impl Search<'_, '_> {
 
     /// Whether the parts of a cell would be no smaller, but for rounding.
     fn is_least(&self, cell: u32, values: &[Enclosure; 2]) -> bool {
-        let slack = self.map.rounding();
-        let flat = (0..2).all(|k| values[k].radius() < FLAT * slack[k]);
+        let rounding = self.map.rounding();
+        let flat = (0..2).all(|k| values[k].radius() < FLAT * rounding[k]);
         flat || self.map.bounds(&cell).iter().all(|side| 2.0 * side.radius() < SMALLEST)
     }
 
@@ -310,7 +310,7 @@ impl Over<'_, '_> {
                 return found(next, finds);
             }
             within = chart.region(&here, place, &within);
-            let own = chart.slack();
+            let own = chart.variable_rounding();
             if !within.is_empty() && within.is_within(own.map(|own| ON_FACE + 4.0 * own)) {
                 // As close as rounding allows.
                 return match (step, next) {

@@ -23,7 +23,7 @@ pub(super) struct Chart {
     rest: Square,
     /// `R(I − R)⁻¹`, and the rounding error of a prediction times `(I − R)⁻¹`.
     spread: Square,
-    slack: [f64; 2],
+    variable_rounding: [f64; 2],
     /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`, or the jump at an edge.
     pub jump: i8,
     /// −1 if the normals that are evaluated point inwards, as those of an edge may.
@@ -202,8 +202,9 @@ impl Chart {
         let product = |i: usize, j: usize| grown * (rest[i][0] * sum[0][j] + rest[i][1] * sum[1][j]);
         let spread = [[product(0, 0), product(0, 1)], [product(1, 0), product(1, 1)]];
         let own = inverse.map(|row| row[0].abs() * rounding[0] + row[1].abs() * rounding[1] + 16.0 * f64::EPSILON);
-        let slack = times(&sum, own).map(|x| grown * x);
-        let known = slack.iter().all(|x| x.is_finite()) && slopes.iter().all(|slope| magnitude(*slope).is_finite());
+        let variable_rounding = times(&sum, own).map(|x| grown * x);
+        let known =
+            variable_rounding.iter().all(|x| x.is_finite()) && slopes.iter().all(|slope| magnitude(*slope).is_finite());
         if !(finite(&spread) && known) {
             return Err(rough());
         }
@@ -215,7 +216,7 @@ impl Chart {
             inverse,
             rest,
             spread,
-            slack,
+            variable_rounding,
             jump: if inverted(&mid).1 > 0.0 { 1 } else { -1 },
             outwards: 1.0,
             slopes: [0, 1].map(|j| (slopes[j].0 * half[j], slopes[j].1 * half[j])),
@@ -241,7 +242,13 @@ impl Chart {
         );
         let spread = times(&self.spread, step.map(f64::abs));
         let place = [witness.at[0] + step[0], witness.at[1] + step[1]];
-        (place, [spread[0] + self.slack[0], spread[1] + self.slack[1]])
+        (
+            place,
+            [
+                spread[0] + self.variable_rounding[0],
+                spread[1] + self.variable_rounding[1],
+            ],
+        )
     }
 
     /// The part of a region in which the map can have these values.
@@ -255,7 +262,10 @@ impl Chart {
         let spread = times(&self.rest, far);
         region.intersect(&Region::around(
             place,
-            [spread[0] + self.slack[0], spread[1] + self.slack[1]],
+            [
+                spread[0] + self.variable_rounding[0],
+                spread[1] + self.variable_rounding[1],
+            ],
         ));
         region
     }
@@ -266,7 +276,7 @@ impl Chart {
         let mut region = Region::WHOLE;
         // Not farther from the place than R times the largest distance from the witness.
         let most = times(&self.rest, witness.at.map(|s| 1.0 + s.abs()));
-        let reach = [0, 1].map(|i: usize| larger(near[i], far[i]).min(most[i] + self.slack[i]));
+        let reach = [0, 1].map(|i: usize| larger(near[i], far[i]).min(most[i] + self.variable_rounding[i]));
         region.intersect(&Region {
             lo: [0, 1].map(|i: usize| -larger(-a[i], -b[i]) - reach[i]),
             hi: [0, 1].map(|i: usize| larger(a[i], b[i]) + reach[i]),
@@ -297,14 +307,14 @@ impl Chart {
     pub fn is_close(&self, step: [f64; 2], next: [f64; 2], accept: [f64; 2]) -> bool {
         let near_face = next[0].abs().max(next[1].abs()) > 1.0 - NEAR_FACE;
         let long = step[0].abs().max(step[1].abs());
-        let slack = self.slack();
-        let tells_sides = (0..2).all(|i| (1.0 - next[i].abs()).abs() > long * long || long <= slack[i]);
+        let variable_rounding = self.variable_rounding();
+        let tells_sides = (0..2).all(|i| (1.0 - next[i].abs()).abs() > long * long || long <= variable_rounding[i]);
         long <= accept[usize::from(near_face)] && tells_sides
     }
 
     /// The rounding error of a position.
-    pub fn slack(&self) -> [f64; 2] {
-        self.slack
+    pub fn variable_rounding(&self) -> [f64; 2] {
+        self.variable_rounding
     }
 
     /// Whether a point is in the cell. Only its lower sides, and upper sides on the patch's boundary, belong to it.

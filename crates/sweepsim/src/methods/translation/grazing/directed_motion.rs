@@ -35,7 +35,7 @@ pub(super) struct DirectedMotion {
     pub ground: Ground,
     /// Whether it is traversed backwards: then the time runs from 1 to 0.
     reversed: bool,
-    pub slack: f64,
+    pub system_rounding: f64,
     pub own: Directions,
     /// The tool's turn, and the directions of `q` at the start and of the way, in space.
     turn: Matrix3<f64>,
@@ -131,10 +131,13 @@ impl Directions {
     }
 
     /// The ranges of `q` and `p` over a cell with these control points, which may be off by so much, with the rounding error of coordinates.
-    pub fn ranges(&self, position: &Triples, off: f64, slack: f64) -> [Range; 2] {
+    pub fn ranges(&self, position: &Triples, off: f64, system_rounding: f64) -> [Range; 2] {
         match (&self.centre, self.wedge(position, off)) {
-            (Some(centre), Some(wedge)) => [wedge.q(slack), widened(wedge.p(centre.spread), slack)],
-            _ => [0, 1].map(|k| widened(products(&[self.rows[k]], position), off + slack)),
+            (Some(centre), Some(wedge)) => [
+                wedge.q(system_rounding),
+                widened(wedge.p(centre.spread), system_rounding),
+            ],
+            _ => [0, 1].map(|k| widened(products(&[self.rows[k]], position), off + system_rounding)),
         }
     }
 
@@ -169,8 +172,9 @@ fn unit<const N: usize>(v: [f64; N]) -> [f64; N] {
 }
 
 impl DirectedMotion {
-    /// `None` for moves that turn, or have too little travel across the dexels. `slack`: the rounding error of coordinates.
-    pub fn new(segment: &Segment, slack: f64) -> Option<Self> {
+    /// `None` for moves that turn, or have too little travel across the dexels. `system_rounding`: the rounding error of
+    /// coordinates that all systems allow for.
+    pub fn new(segment: &Segment, system_rounding: f64) -> Option<Self> {
         if !segment.is_arc() || segment.turns().len() != 1 {
             return None;
         }
@@ -179,7 +183,7 @@ impl DirectedMotion {
         let length = way[0].hypot(way[1]);
         let size = length.hypot(way[2]);
         // NaN is refused, too.
-        if !(length > SHORTEST * slack && size.is_finite()) {
+        if !(length > SHORTEST * system_rounding && size.is_finite()) {
             return None;
         }
         // The first component that is not almost 0 is positive.
@@ -195,7 +199,7 @@ impl DirectedMotion {
         let floor = Floor {
             tip: from,
             ahead,
-            slack,
+            rounding: system_rounding,
         };
         Some(Self {
             from: from[2],
@@ -203,7 +207,7 @@ impl DirectedMotion {
             length,
             ground: Ground::Floor(floor),
             reversed,
-            slack,
+            system_rounding,
             own: Directions {
                 backwards: reversed,
                 ..Directions::new(&turn, ahead, way.map(|x| x / size), 0.0)
@@ -218,11 +222,11 @@ impl DirectedMotion {
     ///
     /// In the frame that turns with the arc, the velocity of a tool of revolution is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point
     /// out of its surface: `g` is that of the translation. Other tools keep that turn.
-    pub fn around(level_arc: &LevelArc, segment: &Segment, slack: f64) -> Option<Self> {
+    pub fn around(level_arc: &LevelArc, segment: &Segment, system_rounding: f64) -> Option<Self> {
         let (radius, angle) = (level_arc.radius, level_arc.angle.abs());
         let [first, last] = segment.tips();
         let climb = segment.travel()[2];
-        if !(level_arc.length() > SHORTEST * slack && level_arc.length().hypot(climb).is_finite()) {
+        if !(level_arc.length() > SHORTEST * system_rounding && level_arc.length().hypot(climb).is_finite()) {
             return None;
         }
         let reversed = level_arc.angle < 0.0;
@@ -245,7 +249,7 @@ impl DirectedMotion {
             centre: level_arc.centre,
             radius,
             from: out,
-            slack,
+            rounding: system_rounding,
         };
         let own = Directions::new(&turn, ahead, unit(way), 0.0).around(centre, level_arc.tool_x.is_some());
         Some(Self {
@@ -254,7 +258,7 @@ impl DirectedMotion {
             length: angle,
             ground: Ground::Ring(ring),
             reversed,
-            slack,
+            system_rounding,
             own: Directions {
                 backwards: reversed,
                 ..own

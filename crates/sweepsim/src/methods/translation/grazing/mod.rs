@@ -79,7 +79,7 @@ pub(crate) struct Grazed<'a, 'b> {
     pub collector: &'a mut Collector<'b>,
     pub ceiling: Option<&'a Ceiling>,
     /// The rounding error of coordinates.
-    pub slack: f64,
+    pub system_rounding: f64,
     /// Heights this close are the same.
     pub height_tolerance: f64,
     /// The longest last step of Newton's method.
@@ -137,8 +137,8 @@ impl Grazing {
             return;
         }
         let motion = match grazed.level_arc {
-            Some(level_arc) => DirectedMotion::around(level_arc, grazed.segment, grazed.slack),
-            None => DirectedMotion::new(grazed.segment, grazed.slack),
+            Some(level_arc) => DirectedMotion::around(level_arc, grazed.segment, grazed.system_rounding),
+            None => DirectedMotion::new(grazed.segment, grazed.system_rounding),
         };
         let Some(motion) = motion else { return };
         let mut targets = std::mem::take(&mut self.targets);
@@ -165,7 +165,8 @@ impl Grazing {
                 if number == ring.start {
                     mark = grazed.collector.mark();
                 }
-                let tree = trees[number].get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.slack));
+                let tree = trees[number]
+                    .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
                 let of = (element, &mut *cells);
                 done[number] = if element.is_edge() {
                     let curve = &Rim::new(element, &motion.own);

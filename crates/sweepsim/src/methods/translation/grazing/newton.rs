@@ -43,11 +43,11 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
             [a, b] => a.or(b),
         };
-        let slack = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.ground.error(p);
         if let (Some(knot), Some((q, _))) = (nearest, line) {
             let (lo, hi) = chart.q(&knot.witness, &within);
             // A knot is of use to other lines.
-            if !polished && !meets((lo - slack, hi + slack), q, length) {
+            if !polished && !meets((lo - error, hi + error), q, length) {
                 return None;
             }
             // So near that it needs no other point.
@@ -97,7 +97,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                     }
                 }
             }
-            let own = chart.slack();
+            let own = chart.variable_rounding();
             let least = own.map(|own| ON_FACE + 4.0 * own);
             // The point was in that region already: where the map is almost linear, one look from far away leaves as little.
             let is_least = within.is_within(least);
@@ -136,9 +136,9 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// Leaves a line open, unless no point of the region meets it on its way, as seen from a witness.
     fn leave(&mut self, (p, line): (f64, Option<(f64, u32)>), witness: &Witness, within: &Region) {
         let Some((q, line)) = line else { return };
-        let slack = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.ground.error(p);
         let (lo, hi) = self.chart.q(witness, within);
-        if meets((lo - slack, hi + slack), q, self.lines.motion.length) {
+        if meets((lo - error, hi + error), q, self.lines.motion.length) {
             self.lines.collector.open(line as usize);
         }
     }

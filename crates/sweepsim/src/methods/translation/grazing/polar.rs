@@ -124,9 +124,9 @@ impl Wedge {
     }
 
     /// The range of `q`, with a rounding error of coordinates. Within a turn, or unbounded.
-    pub fn q(&self, slack: f64) -> Range {
+    pub fn q(&self, system_rounding: f64) -> Range {
         let (near, _) = self.distance;
-        let error = slack / near;
+        let error = system_rounding / near;
         self.turns
             .filter(|_| error < 0.01)
             .map_or(UNKNOWN, |turns| widened(sum((self.middle, self.middle), turns), error))

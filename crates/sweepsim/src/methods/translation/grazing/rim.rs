@@ -104,7 +104,7 @@ pub(super) fn look(
     p: Range,
     directions: &Directions,
     blur: &Blur,
-    slack: f64,
+    system_rounding: f64,
 ) -> Look {
     let error = error(element, [cells.bounds(cell, 0), (0.0, 1.0)], directions);
     let is_family = directions.spread > 0.0;
@@ -115,7 +115,7 @@ pub(super) fn look(
     let signs = ranges.map(|range| sign(range, error + blur.g).filter(alike));
     let rough = if upper - lower < SMALLEST {
         if is_family { Look::Mixed } else { Look::Least }
-    } else if p.1 - p.0 - 2.0 * slack < FLAT * slack {
+    } else if p.1 - p.0 - 2.0 * system_rounding < FLAT * system_rounding {
         Look::Least
     } else {
         Look::Rough
@@ -140,7 +140,7 @@ pub(super) fn look(
     let jacobian = [[across, NOTHING], [NOTHING, (1.0, 1.0)]];
     let blurs = [[differs, 0.0], [0.0; 2]];
     let bounds = [[lower, -half], [upper, half]];
-    match Chart::new(bounds, &jacobian, &blurs, [slack, 0.0], [ahead, NOTHING]) {
+    match Chart::new(bounds, &jacobian, &blurs, [system_rounding, 0.0], [ahead, NOTHING]) {
         Ok(mut chart) => {
             // The determinant of ∂(X, Y)/∂(r, t) has the opposite sign of p′, and one more sign is that of the jump.
             chart.jump *= if after > before { 1 } else { -1 };

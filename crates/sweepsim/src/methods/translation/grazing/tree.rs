@@ -177,14 +177,20 @@ fn towards_pole(element: &PatchForms, bounds: [Range; 2]) -> Option<usize> {
 
 impl Tree {
     /// Of all of a cell.
-    pub fn new(element: &PatchForms, cells: &mut Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
+    pub fn new(
+        element: &PatchForms,
+        cells: &mut Cells,
+        cell: u32,
+        directions: &Directions,
+        system_rounding: f64,
+    ) -> Self {
         let blur = Blur::new((element, cells), cell, directions);
         let mut tree = Self {
             nodes: Vec::new(),
             charts: Vec::new(),
             blur,
         };
-        tree.put((element, cells), (cell, 0), directions, slack);
+        tree.put((element, cells), (cell, 0), directions, system_rounding);
         tree
     }
 
@@ -201,17 +207,17 @@ impl Tree {
         (element, cells): (&PatchForms, &Cells),
         (cell, depth): (u32, u32),
         directions: &Directions,
-        slack: f64,
+        system_rounding: f64,
     ) {
         let position = cells.position(element, cell);
-        let [q, p] = directions.ranges(&position, self.blur.place, slack);
+        let [q, p] = directions.ranges(&position, self.blur.place, system_rounding);
         let (lowest, _) = products(&[directions.rows[2]], &position);
         let node = Node {
             cell,
             depth,
             q,
             p,
-            lowest: lowest - self.blur.place - slack,
+            lowest: lowest - self.blur.place - system_rounding,
             state: State::Fresh,
         };
         self.nodes.push(node);
@@ -222,12 +228,12 @@ impl Tree {
         &mut self,
         number: u32,
         (element, cells): (&PatchForms, &mut Cells),
-        (directions, slack): (&Directions, f64),
+        (directions, system_rounding): (&Directions, f64),
         looks: &mut u64,
     ) -> Known<'_> {
         if let State::Fresh = self.nodes[number as usize].state {
             *looks += 1;
-            let state = self.examined(number, (element, cells), directions, slack);
+            let state = self.examined(number, (element, cells), directions, system_rounding);
             self.nodes[number as usize].state = state;
         }
         match self.nodes[number as usize].state {
@@ -245,16 +251,16 @@ impl Tree {
         number: u32,
         (element, cells): (&PatchForms, &mut Cells),
         directions: &Directions,
-        slack: f64,
+        system_rounding: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
         if element.is_edge() {
-            return match look((element, &mut *cells, cell), p, directions, &self.blur, slack) {
+            return match look((element, &mut *cells, cell), p, directions, &self.blur, system_rounding) {
                 Look::Empty => State::Empty,
                 Look::Chart(chart) => self.chart(*chart),
                 Look::Mixed => State::Mixed,
                 Look::Least => State::Least,
-                Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, slack),
+                Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, system_rounding),
             };
         }
         let (lo, hi) = g(element, cells, cell, 0, directions);
@@ -283,7 +289,7 @@ impl Tree {
         let jacobian = [[p_u, p_v], of_g];
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
         let blur = [[in_u, in_v], *g_slopes];
-        let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], [q_u, q_v]) {
+        let rough = match Chart::new([lower, upper], &jacobian, &blur, [system_rounding, error], [q_u, q_v]) {
             Ok(chart) => return self.chart(chart),
             Err(rough) => rough,
         };
@@ -303,7 +309,7 @@ impl Tree {
         });
         if let Some([u, v]) = rest {
             let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
-            self.put((element, cells), (part, depth + 1), directions, slack);
+            self.put((element, cells), (part, depth + 1), directions, system_rounding);
             return State::Rest(self.nodes.len() as u32 - 1);
         }
         let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
@@ -312,11 +318,11 @@ impl Tree {
         if directions.spread > 0.0 && (is_blurred || small) {
             return State::Mixed;
         }
-        if small || p.1 - p.0 - 2.0 * slack < FLAT * slack {
+        if small || p.1 - p.0 - 2.0 * system_rounding < FLAT * system_rounding {
             return State::Least;
         }
         let axis = towards_pole(element, bounds).unwrap_or_else(|| divided(&jacobian, sides, depth, &rough));
-        self.divide((element, cells), (cell, depth, axis), directions, slack)
+        self.divide((element, cells), (cell, depth, axis), directions, system_rounding)
     }
 
     fn chart(&mut self, chart: Chart) -> State {
@@ -329,12 +335,12 @@ impl Tree {
         (element, cells): (&PatchForms, &mut Cells),
         (cell, depth, axis): (u32, u32, usize),
         directions: &Directions,
-        slack: f64,
+        system_rounding: f64,
     ) -> State {
         let parts = cells.split(element, cell, axis);
         let first = self.nodes.len() as u32;
         for part in parts {
-            self.put((element, cells), (part, depth + 1), directions, slack);
+            self.put((element, cells), (part, depth + 1), directions, system_rounding);
         }
         State::Parts(first)
     }

@@ -39,7 +39,7 @@ pub(super) struct Walk<'a, 'b, S, C> {
 
 impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
     pub fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
-        let slack = self.motion.slack;
+        let system_rounding = self.motion.system_rounding;
         let mut stack = vec![Next::Visit(0)];
         while let Some(next) = stack.pop() {
             let number = match next {
@@ -63,7 +63,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
             }
             let of = (self.element, &mut *self.cells);
             let before = self.looks;
-            let known = tree.known(number, of, (directions, slack), &mut self.looks);
+            let known = tree.known(number, of, (directions, system_rounding), &mut self.looks);
             if directions.spread == 0.0 {
                 self.own_looks += self.looks - before;
             }
@@ -80,7 +80,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
                 }
                 Known::Mixed => {
                     let own = &self.motion.own;
-                    let mut tree = Tree::new(self.element, self.cells, cell, own, slack);
+                    let mut tree = Tree::new(self.element, self.cells, cell, own, system_rounding);
                     self.tree(&mut tree, own)?;
                 }
                 Known::Least => self.lines.leave(window),

@@ -13,7 +13,7 @@ pub(in crate::methods::translation) struct Ring {
     /// The direction from the centre to the tip at the start.
     pub from: [f64; 2],
     /// The rounding error of coordinates.
-    pub slack: f64,
+    pub rounding: f64,
 }
 
 /// What `p` and `q` of lines are.
@@ -60,9 +60,9 @@ impl Ground {
         }
     }
 
-    fn slack(&self) -> f64 {
+    fn rounding(&self) -> f64 {
         match self {
-            Self::Floor(Floor { slack, .. }) | Self::Ring(Ring { slack, .. }) => *slack,
+            Self::Floor(Floor { rounding, .. }) | Self::Ring(Ring { rounding, .. }) => *rounding,
         }
     }
 
@@ -79,7 +79,7 @@ impl Ground {
     #[inline]
     pub fn error(&self, p: f64) -> f64 {
         // Of a line at the centre, nothing is known: infinite, or negative by rounding.
-        4.0 * self.slack() / self.scale(p).max(0.0)
+        4.0 * self.rounding() / self.scale(p).max(0.0)
     }
 
     /// The value of `q`, of a point with this one or another that is a whole turn away, which is nearest to a given one.
@@ -108,7 +108,7 @@ impl Ground {
     #[inline]
     fn place_in(&self, [x, y]: [f64; 2], [p, q]: Window, margins: f64) -> Option<[f64; 2]> {
         let off = |own: f64, [low, high]: [f64; 2], margin: f64| own < low - margin || own > high + margin;
-        let margin = margins * self.slack();
+        let margin = margins * self.rounding();
         match self {
             Self::Floor(floor) => {
                 let [ux, uy] = floor.ahead;
@@ -138,7 +138,7 @@ impl Ground {
     fn search(&self, lines: &Lattice, window: Window, visit: impl FnMut(Row) -> bool) -> bool {
         match self {
             Self::Floor(floor) => search(lines, floor, window, visit),
-            Self::Ring(ring) => ring.sector(window).search(lines, ring.slack, visit),
+            Self::Ring(ring) => ring.sector(window).search(lines, ring.rounding, visit),
         }
     }
 
@@ -197,7 +197,7 @@ mod tests {
             let grid = Grid::new([-3.0, -2.0], [4.0, 3.0], [7, 9]).unwrap();
             let lines = Lattice::all(&grid, shift);
             let (uy, ux) = f64::sin_cos(angle);
-            let ground = Ground::Floor(Floor { tip: [tip[0], tip[1], 0.0], ahead: [ux, uy], slack: 1e-14 });
+            let ground = Ground::Floor(Floor { tip: [tip[0], tip[1], 0.0], ahead: [ux, uy], rounding: 1e-14 });
             let place = |(i, j): (usize, usize)| {
                 let [x, y] = [lines.coordinate(0, i) - tip[0], lines.coordinate(1, j) - tip[1]];
                 [ux * y - uy * x, ux * x + uy * y]
@@ -225,7 +225,7 @@ mod tests {
         ) {
             let grid = Grid::new([-3.0, -2.0], [4.0, 3.0], [7, 9]).unwrap();
             let lines = Lattice::all(&grid, [0.01, -0.02]);
-            let ring = Ring { centre, radius, from: [f64::cos(start), f64::sin(start)], slack: 1e-14 };
+            let ring = Ring { centre, radius, from: [f64::cos(start), f64::sin(start)], rounding: 1e-14 };
             let ground = Ground::Ring(ring);
             let window = [[p, p + width], if unbounded { [f64::NEG_INFINITY, f64::INFINITY] } else { [q, q + length] }];
             let mut expected = Vec::new();

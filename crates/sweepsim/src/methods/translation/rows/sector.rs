@@ -38,16 +38,16 @@ impl Sector {
     }
 
     /// Visits all lines in it, and a few others; `x` of a row is from the centre.
-    pub fn rows(&self, lines: &Lattice, slack: f64, mut visit: impl FnMut(Row)) {
-        self.search(lines, slack, |row| {
+    pub fn rows(&self, lines: &Lattice, rounding: f64, mut visit: impl FnMut(Row)) {
+        self.search(lines, rounding, |row| {
             visit(row);
             false
         });
     }
 
     /// Visits rows until `visit` returns true.
-    pub(super) fn search(&self, lines: &Lattice, slack: f64, mut visit: impl FnMut(Row) -> bool) -> bool {
-        let margin = 4.0 * slack;
+    pub(super) fn search(&self, lines: &Lattice, rounding: f64, mut visit: impl FnMut(Row) -> bool) -> bool {
+        let margin = 4.0 * rounding;
         let [inner, outer] = [(self.radii[0] - margin).max(0.0), self.radii[1] + margin];
         let whole = self.angles[1] - self.angles[0] > 0.99 * PI;
         let (xs, ys) = if whole {

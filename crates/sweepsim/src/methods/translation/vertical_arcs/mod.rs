@@ -188,7 +188,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let floor = Floor {
             tip,
             ahead,
-            slack: self.slack,
+            rounding: self.slack,
         };
         let lattice = self.lines.lines;
         rows(lattice, &floor, ranges, |Row { i, j, x }| {
