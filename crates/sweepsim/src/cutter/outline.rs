@@ -65,6 +65,26 @@ pub(crate) struct Outline {
     pub(crate) rings: [Vec<Range<usize>>; 2],
 }
 
+/// The normal of the envelope at a sharp edge, of any length: in the fan of the two faces, where `g = 0`. `sides` is `g` on
+/// both, of which one is negative.
+#[inline]
+pub(crate) fn fan_normal([first, second]: &[[f64; 2]; 2], [a, b]: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| first[k] * b.abs() + second[k] * a.abs())
+}
+
+impl Rim {
+    /// The normal of the envelope, outwards and along the axis, for a motion in this direction, and whether `g` is negative
+    /// on the first face: `Some(None)` if both faces move inwards or both outwards, `None` if that is in doubt.
+    #[inline]
+    pub fn envelope(&self, [out, along]: [f64; 2], doubt: f64) -> Option<Option<([f64; 2], bool)>> {
+        let sides = self.normals.map(|[n, m]| n * out + m * along);
+        let [a, b] = sides;
+        let certain = a.abs() > doubt && b.abs() > doubt;
+        let bounds = (a < 0.0) != (b < 0.0);
+        certain.then(|| bounds.then(|| (fan_normal(&self.normals, sides), a < 0.0)))
+    }
+}
+
 /// The normal of a direction: to the right.
 fn right([x, y]: [f64; 2]) -> [f64; 2] {
     [y, -x]

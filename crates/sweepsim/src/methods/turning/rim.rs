@@ -17,7 +17,7 @@ use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Known, Sample, start, zero};
 use super::{Leftover, Searching};
-use crate::cutter::outline::Rim;
+use crate::cutter::outline::{Rim, fan_normal};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
 use std::cell::Cell;
@@ -308,9 +308,9 @@ impl<'a> RimSearch<'a> {
                 let out = out + step * (slides.dot(&placed.travel) + height * arm.dot(&placed.bend)) / self.rim.radius;
                 let along = along + step * (lift * placed.axis.z + placed.rate.z * sample.rise);
                 let (later, axis) = (arm + slides * step, placed.axis + placed.rate * step);
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let (first, second) = ((n * out + m * along).abs(), (p * out + q * along).abs());
-                let normal = later * ((n * second + p * first) / self.rim.radius) + axis * (m * second + q * first);
+                let later_faces = [n * out + m * along, p * out + q * along];
+                let [radial, axial] = fan_normal(&self.rim.normals, later_faces);
+                let normal = later * (radial / self.rim.radius) + axis * axial;
                 let tilt = arm.z * inverse;
                 let gradient = [
                     2.0 * inwards * (arm.x - tilt * placed.axis.x),

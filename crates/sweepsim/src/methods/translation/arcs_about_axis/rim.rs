@@ -2,7 +2,7 @@
 
 use super::roots::Open;
 use super::{AXIS, Along, ArcPlace, EnvelopePoint, Orbit, Sector, View, length, products};
-use crate::cutter::outline::Rim;
+use crate::cutter::outline::{Rim, fan_normal};
 use sweepsim_dexel::Source;
 
 /// An angle whose cosine is closer to 1 than this many errors is in doubt.
@@ -166,10 +166,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         }
         let inwards = ahead > 0.0;
         let orientation = if (self.arc.tilt[1] > 0.0) == inwards { -1 } else { 1 };
-        // The envelope's normal lies in the fan of the two faces, where g = 0.
-        let [[n, m], [p, q]] = rim.normals;
-        let (first, second) = (a.abs(), b.abs());
-        let (radial, along) = (n * second + p * first, m * second + q * first);
+        let [radial, along] = fan_normal(&rim.normals, [a, b]);
         let normal = match level {
             Some((up, _)) => [0.0, 0.0, up],
             None => [radial * out, radial * ahead * self.arc.side(), along],

@@ -2,7 +2,7 @@
 
 use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
 use super::{Heading, Local, along, dot};
-use crate::cutter::outline::Rim;
+use crate::cutter::outline::{Rim, fan_normal};
 use std::f64::consts::PI;
 
 /// A circle that is seen from the side, narrower than this part of its radius, is left to the general method.
@@ -270,8 +270,7 @@ impl Ring {
             } => {
                 let ([a, b], certain) = self.sides([c, s], error);
                 let jump = self.change([a, b]);
-                // In the fan of the two faces, where g = 0.
-                let [n, m] = [0, 1].map(|k| normals[0][k] * b.abs() + normals[1][k] * a.abs());
+                let [n, m] = fan_normal(normals, [a, b]);
                 (jump, along(&arm.map(|x| x * n / radius), m, axis), certain)
             }
         };
@@ -367,8 +366,8 @@ impl Graph for Ring {
                     let turn = turn(value);
                     let arm = along(&self.first.map(|x| turn[0] * x), turn[1], &self.second);
                     let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
-                    let [a, b] = rates.map(|[ahead, up]| (ahead * cosine + up).abs());
-                    let [n, m] = [0, 1].map(|k| normals[0][k] * b + normals[1][k] * a);
+                    let [a, b] = rates.map(|[ahead, up]| ahead * cosine + up);
+                    let [n, m] = fan_normal(normals, [a, b]);
                     *point = GraphCrossing {
                         z: self.centre[2] + arm[2],
                         normal: along(&arm.map(|x| x * n / radius), m, axis),

@@ -63,21 +63,16 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 let (ahead, up) = (-side * sine, side * cosine);
                 let out = arm * ahead / big;
                 let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
-                let faces = rim.normals.map(|[n, m]| n * out + m * up);
-                if faces.iter().any(|g| !(g.abs() > doubt)) {
+                let Some(envelope) = rim.envelope([out, up], doubt) else {
                     self.lines.open(line);
                     return;
-                }
-                let [a, b] = faces;
-                if (a < 0.0) == (b < 0.0) {
+                };
+                let Some(([radial, along], first)) = envelope else {
                     continue;
-                }
+                };
                 // The line comes into the circle if it is in front of its centre.
                 let orientation = if out > 0.0 { -1 } else { 1 };
-                let jump = if a < 0.0 { -orientation } else { orientation };
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = rim.normals;
-                let [radial, along] = [0, 1].map(|k| n[k] * b.abs() + m[k] * a.abs());
+                let jump = if first { -orientation } else { orientation };
                 let normal = self.in_space([radial * arm / big, radial * p / big, along]);
                 let source = (self.source)(share);
                 self.lines.crossing(line, level + r * sine, jump, normal, source);

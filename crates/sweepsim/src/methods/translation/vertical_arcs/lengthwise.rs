@@ -119,19 +119,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             for arm in [half, -half] {
                 let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
                 let out = arm * up / big;
-                let faces = rim.normals.map(|[n, m]| n * out + m * along);
-                if faces.iter().any(|g| !(g.abs() > doubt)) {
-                    return Err(Open);
-                }
-                let [a, b] = faces;
-                if (a < 0.0) == (b < 0.0) {
+                let Some(([radial, axial], first)) = rim.envelope([out, along], doubt).ok_or(Open)? else {
                     continue;
-                }
-                let orientation = if along * arm > 0.0 { 1 } else { -1 };
-                let jump = if a < 0.0 { -orientation } else { orientation };
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = rim.normals;
-                let [radial, axial] = [0, 1].map(|k| n[k] * b.abs() + m[k] * a.abs());
+                };
+                let jump = if first == (along * arm > 0.0) { -1 } else { 1 };
                 let normal = self.in_space([axial * aq, radial * p / big, radial * arm / big]);
                 let source = (self.source)(share);
                 let z = self.arc.centre[2] + r * sine + arm;

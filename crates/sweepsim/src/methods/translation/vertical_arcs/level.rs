@@ -226,18 +226,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 let turn = own.arc.side();
                 let (across, along) = (-turn * sine * x / big, turn * cosine);
                 let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
-                let faces = rim.normals.map(|[n, m]| n * across + m * along);
-                if faces.iter().any(|g| !(g.abs() > doubt)) {
-                    return Err(Open);
-                }
-                let [a, b] = faces;
-                if (a < 0.0) == (b < 0.0) {
+                let Some(([radial, axial], first)) = rim.envelope([across, along], doubt).ok_or(Open)? else {
                     continue;
-                }
-                let jump = if (a < 0.0) == (along > 0.0) { -1 } else { 1 };
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = rim.normals;
-                let [radial, axial] = [0, 1].map(|k| n[k] * b.abs() + m[k] * a.abs());
+                };
+                let jump = if first == (along > 0.0) { -1 } else { 1 };
                 let normal = [radial * x / big, axial, radial * half / big];
                 own.faces(line, &Face { half, normal, jump }, share);
             }
