@@ -1,7 +1,7 @@
 //! Stretches of a meridian with one radius at each height: of a tool that lies across the dexels, a line is at one height all along.
 
-use crate::cutter::outline::{Piece, Shape};
-use std::f64::consts::{FRAC_PI_2, PI};
+use crate::cutter::outline::{Monotone, Piece, Shape};
+use std::f64::consts::PI;
 
 /// Cones that are flatter than this, but no discs, are left to charts.
 const FLATTEST: f64 = 1e-6;
@@ -66,23 +66,9 @@ impl Stretch {
                 }]
             }),
             Shape::Arc {
-                centre,
-                radius,
-                angles: [first, last],
-                out,
+                centre, radius, out, ..
             } => {
-                // The ends by ascending angle.
-                let ends = if out > 0.0 { [from, to] } else { [to, from] };
-                let mut places = vec![(first, ends[0])];
-                // Extremes of the height, at odd quarters.
-                let quarter = |angle: f64| (angle - FRAC_PI_2) / PI;
-                for turn in quarter(first).floor() as i64 + 1..quarter(last).ceil() as i64 {
-                    let up = if turn % 2 == 0 { 1.0 } else { -1.0 };
-                    places.push((turn as f64 * PI + FRAC_PI_2, [centre[0], centre[1] + up * radius]));
-                }
-                places.push((last, ends[1]));
-                let stretch = |pair: &[(f64, [f64; 2])]| {
-                    let &[(a, from), (b, to)] = pair else { return None };
+                let stretch = |[(a, from), (b, to)]: [(f64, [f64; 2]); 2]| {
                     let side = 1.0_f64.copysign((0.5 * (a + b)).cos());
                     let [low, high] = sorted(from[0], to[0]);
                     // The widest place of the circle may lie between.
@@ -104,7 +90,13 @@ impl Stretch {
                         },
                     })
                 };
-                Some(places.windows(2).filter_map(stretch).collect())
+                Some(
+                    piece
+                        .monotone(Monotone::Height)
+                        .into_iter()
+                        .filter_map(stretch)
+                        .collect(),
+                )
             }
         }
     }

@@ -6,10 +6,9 @@ use super::super::rows::numbers;
 use super::super::{Ceiling, Collector};
 use super::ball_sign_changes::Lune;
 use super::radial::{Hypot, Radial, Stretch, StretchPoint};
-use crate::cutter::outline::{Outline, Piece, Shape};
+use crate::cutter::outline::{Monotone, Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use crate::time::path_parts::PathPart;
-use std::f64::consts::PI;
 use sweepsim_dexel::Source;
 use sweepsim_motion::SegmentEnd;
 
@@ -106,16 +105,9 @@ impl Placed<'_, '_> {
                 self.stretch(&line, [ends[0][0], ends[1][0]]);
             }
             Shape::Arc {
-                centre,
-                radius,
-                angles,
-                out,
+                centre, radius, out, ..
             } => {
-                // Cut where the radius is extreme.
-                let mut from = angles[0];
-                while from < angles[1] {
-                    let next = ((from / PI).floor() + 1.0) * PI;
-                    let to = if next > from { next.min(angles[1]) } else { angles[1] };
+                for [(from, _), (to, _)] in piece.monotone(Monotone::Radius) {
                     let rho = [from, to].map(|angle| centre[0] + radius * angle.cos());
                     let arc = Radial::Arc {
                         centre,
@@ -124,7 +116,6 @@ impl Placed<'_, '_> {
                         out,
                     };
                     self.stretch(&arc, [rho[0].min(rho[1]), rho[0].max(rho[1])]);
-                    from = to;
                 }
             }
         }

@@ -4,8 +4,7 @@
 
 use super::roots::{Bounds, Curve};
 use super::sheet::{Meridian, Parallel, Sheet, SheetPoint};
-use crate::cutter::outline::{Piece, Shape};
-use std::f64::consts::FRAC_PI_2;
+use crate::cutter::outline::{Monotone, Piece, Shape};
 
 /// Cones are left to charts that are flatter or steeper than this.
 const FLATTEST: f64 = 1e-6;
@@ -81,25 +80,13 @@ impl Quarter {
                 })
             }
             Shape::Arc {
-                centre,
-                radius,
-                angles: [first, last],
-                out,
+                centre, radius, out, ..
             } => {
                 if !(radius > SMALLEST * slack) {
                     return None;
                 }
-                // The ends by ascending angle.
-                let [low, high] = if out > 0.0 { ends } else { [ends[1], ends[0]] };
-                let mut places = vec![(first, low)];
-                for turn in (first / FRAC_PI_2).floor() as i64 + 1..(last / FRAC_PI_2).ceil() as i64 {
-                    let [e, f] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][turn.rem_euclid(4) as usize];
-                    let place = [(centre[0] + radius * e).max(0.0), centre[1] + radius * f];
-                    places.push((turn as f64 * FRAC_PI_2, place));
-                }
-                places.push((last, high));
-                let quarter = |pair: &[(f64, [f64; 2])]| {
-                    let &[(from, a), (to, b)] = pair else { return None };
+                let quarter = |[(from, a), (to, b)]: [(f64, [f64; 2]); 2]| {
+                    let [a, b] = [a, b].map(|[rho, zeta]| [rho.max(0.0), zeta]);
                     let (f, e) = (0.5 * (from + to)).sin_cos();
                     let [side, up] = [1.0_f64.copysign(e), 1.0_f64.copysign(f)];
                     let climb = -side * up;
@@ -127,7 +114,7 @@ impl Quarter {
                         },
                     })
                 };
-                Some(places.windows(2).filter_map(quarter).collect())
+                Some(piece.monotone(Monotone::Both).into_iter().filter_map(quarter).collect())
             }
         }
     }

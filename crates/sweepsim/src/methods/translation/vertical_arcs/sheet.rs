@@ -1,8 +1,7 @@
 //! A stretch of a cone or torus about the dexels' direction with one height at each radius, and the curves parallel to its sections.
 
 use super::roots::{self, Bounds, Curve};
-use crate::cutter::outline::{Piece, Shape};
-use std::f64::consts::PI;
+use crate::cutter::outline::{Monotone, Piece, Shape};
 
 /// Cones are left to charts that are flatter or steeper than this.
 const FLATTEST: f64 = 1e-6;
@@ -105,25 +104,15 @@ impl Sheet {
                     tube: radius,
                     bend: radius.recip(),
                 };
-                // The ends by ascending angle.
-                let [low, high] = if out > 0.0 { ends } else { [ends[1], ends[0]] };
-                let turns = (first / PI).floor() as i64 + 1..(last / PI).ceil() as i64;
-                let mut places = vec![(first, low)];
-                for turn in turns {
-                    let sign = if turn % 2 == 0 { 1.0 } else { -1.0 };
-                    places.push((turn as f64 * PI, (centre[0] + sign * radius).max(0.0)));
-                }
-                places.push((last, high));
-                let sheet = |pair: &[(f64, f64)]| {
-                    let &[(from, a), (to, b)] = pair else { return None };
+                let sheet = |[(from, [a, _]), (to, [b, _])]: [(f64, [f64; 2]); 2]| {
                     (to - from > SLIVER).then(|| Self {
-                        radii: sorted([a, b]),
+                        radii: sorted([a, b].map(|rho| rho.max(0.0))),
                         curve,
                         up: 1.0_f64.copysign((0.5 * (from + to)).sin()),
                         out,
                     })
                 };
-                Some(places.windows(2).filter_map(sheet).collect())
+                Some(piece.monotone(Monotone::Radius).into_iter().filter_map(sheet).collect())
             }
         }
     }
@@ -288,6 +277,7 @@ impl Parallel<'_> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::PI;
 
     fn sheets() -> impl Strategy<Value = Sheet> {
         let torus = (-4.0..4.0_f64, 0.1..4.0_f64, any::<bool>()).prop_map(|(centre, tube, up)| Sheet {
