@@ -2,6 +2,7 @@
 
 mod graph;
 mod heading;
+mod newton;
 mod oblique;
 mod parabola;
 pub(crate) mod quarters;
@@ -22,15 +23,6 @@ pub(crate) type Local = [f64; 3];
 /// The sum `a + s b`.
 fn along(a: &Local, s: f64, b: &Local) -> Local {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-/// The middle of a bracket of Newton's method: the geometric one where its ends differ by much.
-fn middle(a: f64, b: f64) -> f64 {
-    if b > 4.0 * a && a > 0.0 {
-        (a * b).sqrt()
-    } else {
-        0.5 * (a + b)
-    }
 }
 
 fn dot(a: &Local, b: &Local) -> f64 {

@@ -22,7 +22,7 @@
 
 use super::Local;
 use super::graph::{Graph, GraphCrossing, GraphPoint};
-use super::torus::STEPS;
+use super::newton::newton;
 
 /// A step of Newton's method after which `p` is accurate to rounding: its second derivative is below the inverse of the square root of this.
 const LAST: f64 = 1e-10;
@@ -187,31 +187,20 @@ impl Oblique {
     fn invert(&self, p: f64, guess: f64) -> Option<f64> {
         let [low, high] = self.ends;
         let rising = high > low;
-        let (mut a, mut b) = (low.min(high), low.max(high));
-        let (first, last) = (a, b);
-        let mut s = guess;
-        for _ in 0..STEPS {
-            if !(s > a && s < b) {
-                s = 0.5 * (a + b);
-            }
+        let (first, last) = (low.min(high), low.max(high));
+        let at = |s: f64| {
             let [place, rate] = self.across(s);
             let value = place - p;
-            if (value < 0.0) == rising {
-                a = s;
-            } else {
-                b = s;
-            }
-            let next = s - value / rate;
+            (value, value / rate, ())
+        };
+        let done = |s: f64, step: f64, (), [a, b]: [f64; 2]| {
+            let next = s - step;
             if (next - s).abs() <= LAST {
                 return Some(next.max(first).min(last));
             }
-            // Next to an extreme the step may be anything.
-            if b - a <= 2.0 * f64::EPSILON {
-                return Some(s);
-            }
-            s = next;
-        }
-        None
+            (b - a <= 2.0 * f64::EPSILON).then_some(s)
+        };
+        newton([first, last], (rising, guess), |a, b| 0.5 * (a + b), at, done)
     }
 
     /// A guess: `p` is about linear in the parameter, or quadratic next to an end at which it is extreme.

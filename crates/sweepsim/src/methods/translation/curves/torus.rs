@@ -9,12 +9,11 @@
 //!
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
+use super::Heading;
 use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
-use super::{Heading, middle};
+use super::newton::{middle, newton};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Steps of Newton's method, or bisections, of which a handful suffice.
-pub(super) const STEPS: usize = 80;
 /// Steps of many values together, after which those that have not converged are left to the other way.
 const STEPS_TOGETHER: usize = 8;
 /// Where `q` changes faster than this, relative to `p`, each value is looked at by itself.
@@ -155,35 +154,25 @@ impl Torus {
     fn invert(&self, p: f64) -> Option<f64> {
         let [low, high] = self.ends;
         let rising = high > low;
-        let (mut a, mut b) = (low.min(high), low.max(high));
+        let (first, last) = (low.min(high), low.max(high));
         let square = self.slope * self.slope;
         let [offset, radius] = [self.centre[0], self.signs[0] * self.radius];
-        let mut e = self.first_guess(p);
-        for _ in 0..STEPS {
-            if !(e > a && e < b) {
-                e = middle(a, b);
-            }
+        let at = |e: f64| {
             // w² − (p/ρ)², which has the sign of |p(e)| − |p|.
             let rho = offset + radius * e;
             let (steep, flat) = (square / (e * e), p / rho);
             let value = 1.0 + square - steep - flat * flat;
-            if (value < 0.0) == rising {
-                a = e;
-            } else {
-                b = e;
-            }
             let rate = 2.0 * (steep / e + flat * flat * radius / rho);
-            let next = e - value / rate;
+            (value, value / rate, ())
+        };
+        let done = |e: f64, step: f64, (), [a, b]: [f64; 2]| {
+            let next = e - step;
             if (next - e).abs() <= 4.0 * f64::EPSILON * e {
-                return Some(next.clamp(low.min(high), low.max(high)));
+                return Some(next.clamp(first, last));
             }
-            // Next to an extreme the step may be anything.
-            if b - a <= 2.0 * f64::EPSILON * b {
-                return Some(e);
-            }
-            e = next;
-        }
-        None
+            (b - a <= 2.0 * f64::EPSILON * b).then_some(e)
+        };
+        newton([first, last], (rising, self.first_guess(p)), middle, at, done)
     }
 
     /// `|e|`, about, where `|p|` has this value.

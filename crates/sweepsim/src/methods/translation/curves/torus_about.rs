@@ -1,9 +1,9 @@
 //! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
 
 use super::graph::TurnedPoint;
-use super::middle;
+use super::newton::{STEPS, middle, newton};
 use super::ring_about::Beside;
-use super::torus::{STEPS, Torus};
+use super::torus::Torus;
 
 /// Where `|e|` is greater than this, `1 − |e|` has more digits.
 const WIDE: f64 = 0.5;
@@ -87,7 +87,7 @@ impl Torus {
             let [out, ahead] = self.at_widest(beside.radius, u);
             out * out + ahead * ahead - s
         };
-        let (mut a, mut b) = (1.0 - high, 1.0 - low);
+        let (a, b) = (1.0 - high, 1.0 - low);
         let [first, last] = [value(a), value(b)];
         if first * last > 0.0 {
             return None;
@@ -103,17 +103,9 @@ impl Torus {
         let less = (distance - apart) * (distance + apart);
         let root = (half * half + rate * rate * less).max(0.0).sqrt();
         let guesses = [less / (half + root), less / (half - root)];
-        let mut u = guesses.into_iter().find(|u| *u > a && *u < b).unwrap_or(f64::NAN);
-        for _ in 0..STEPS {
-            if !(u > a && u < b) {
-                u = middle(a, b);
-            }
+        let start = guesses.into_iter().find(|u| *u > a && *u < b).unwrap_or(f64::NAN);
+        let at = |u: f64| {
             let value = value(u);
-            if (value < 0.0) == rising {
-                a = u;
-            } else {
-                b = u;
-            }
             let (e, rho) = (1.0 - u, widest - bulge * u);
             let bend = square * u * (2.0 - u) / (e * e);
             let turn = 2.0 * square / (e * e * e);
@@ -121,16 +113,17 @@ impl Torus {
             let [out, _] = self.at_widest(beside.radius, u);
             let outwards = bulge * (1.0 - bend / (1.0 + w)) + 0.5 * rho * turn / w;
             let step = value / (2.0 * out * outwards + rho * (rho * turn - 2.0 * bulge * bend));
-            let next = u - step;
-            if step.abs() <= 4.0 * f64::EPSILON * u || b - a <= 2.0 * f64::EPSILON * b {
+            (value, step, [e, rho, w, out, outwards])
+        };
+        let done = |u: f64, step: f64, [e, rho, w, out, outwards]: [f64; 5], [a, b]: [f64; 2]| {
+            (step.abs() <= 4.0 * f64::EPSILON * u || b - a <= 2.0 * f64::EPSILON * b).then(|| {
                 let f = self.signs[1] * (u * (2.0 - u)).sqrt();
                 let point = self.point(rho, [e, f], w);
                 let ahead = m.abs() * (rho / (e * e) - bulge * f * f / e) * point.q.signum();
-                return Some(beside.seen(out, point, [outwards * f.abs(), ahead]));
-            }
-            u = next;
-        }
-        None
+                beside.seen(out, point, [outwards * f.abs(), ahead])
+            })
+        };
+        newton([a, b], (rising, start), middle, at, done)
     }
 
     /// `p` at a value of `|e|`.
@@ -140,7 +133,6 @@ impl Torus {
 
     /// `p` where the squared distance from that point has the value `s`, over a range of `|e|` where it is monotone.
     pub(crate) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
-        let (mut a, mut b) = (low, high);
         let sign = side * self.side;
         let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
         let square = self.slope * self.slope;
@@ -162,31 +154,26 @@ impl Torus {
         // On a level way, the distance is R − σρ, or that less than 0.
         let guess = |distance: f64| (sign * (radius - distance) - offset) / bulge;
         let mut e = guess(s.sqrt());
-        if !(e > a && e < b) {
+        if !(e > low && e < high) {
             e = guess(-s.sqrt());
         }
-        for _ in 0..STEPS {
-            if !(e > a && e < b) {
-                e = middle(a, b);
-            }
+        let at = |e: f64| {
             let value = value(e);
-            if (value < 0.0) == rising {
-                a = e;
-            } else {
-                b = e;
-            }
             let rho = offset + bulge * e;
             let w = self.sine(e);
             let cube = e * e * e;
             let by = (bulge * cube * (1.0 + square) + offset * square) / (cube * w);
             let rate = sign * seen(e)[0] * by + rho * square * (bulge + offset / cube);
-            let next = e + value / (2.0 * rate);
-            if value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
+            (value, -value / (2.0 * rate), value)
+        };
+        let done = |e: f64, step: f64, value: f64, [a, b]: [f64; 2]| {
+            let next = e - step;
+            let is_last = value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e;
+            (is_last || b - a <= 2.0 * f64::EPSILON * b).then(|| {
                 let e = next.clamp(low, high);
-                return Some(self.side * (offset + bulge * e) * self.sine(e));
-            }
-            e = next;
-        }
-        None
+                self.side * (offset + bulge * e) * self.sine(e)
+            })
+        };
+        newton([low, high], (rising, e), middle, at, done)
     }
 }
