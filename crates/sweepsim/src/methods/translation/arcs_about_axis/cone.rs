@@ -1,7 +1,7 @@
 //! A cone or a cylinder along an arc about its axis: the cones with the radius `R ± ρ` about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products};
+use super::{AXIS, Along, EnvelopePoint, Orbit, Sector, View, between, length, products};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Piece;
 use sweepsim_dexel::Source;
@@ -127,25 +127,13 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         view: &View,
         sector: Sector,
         cone: &Cone,
-        (mut w, doubt): (f64, f64),
+        (w, doubt): (f64, f64),
         value: &impl Fn(f64, f64) -> [f64; 2],
     ) -> Result<(), Open> {
         let sign = if cone.beyond { -1.0 } else { 1.0 };
         let (y, across) = (view.y, self.along.x);
         let tip = |w: f64| [sign * (view.x + across * w), sign * y];
-        let (mut slope, mut step) = (0.0, f64::INFINITY);
-        let mut lift = self.lift(tip(w));
-        for _ in 0..4 {
-            let [f, d] = value(w, lift);
-            (slope, step) = (d, f / d);
-            w -= step;
-            if step.abs() <= 0.1 * self.slack {
-                break;
-            }
-            if (across * step).abs() > STILL * y.abs() {
-                lift = self.lift(tip(w));
-            }
-        }
+        let (w, [slope, step, _]) = self.zero((w, y), tip, value);
         let x = view.x + across * w;
         let rho = length(x, y);
         let bend = (across * y).powi(2) / (rho * rho * rho);

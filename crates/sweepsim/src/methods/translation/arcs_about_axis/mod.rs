@@ -291,6 +291,30 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         ArcPlace::share(turn, angle, (error + ROUNDING) * length(x, y))
     }
 
+    /// The zero of a function of a line's parameter and of the lift, from a guess, with its slope there, the last step, and
+    /// the lift; the tip is in the direction `tip` of the arc's axis.
+    fn zero(
+        &self,
+        (mut w, y): (f64, f64),
+        tip: impl Fn(f64) -> [f64; 2],
+        value: &impl Fn(f64, f64) -> [f64; 2],
+    ) -> (f64, [f64; 3]) {
+        let (mut slope, mut step) = (0.0, f64::INFINITY);
+        let mut lift = self.lift(tip(w));
+        for _ in 0..4 {
+            let [f, d] = value(w, lift);
+            (slope, step) = (d, f / d);
+            w -= step;
+            if step.abs() <= 0.1 * self.slack {
+                break;
+            }
+            if (self.along.x * step).abs() > STILL * y.abs() {
+                lift = self.lift(tip(w));
+            }
+        }
+        (w, [slope, step, lift])
+    }
+
     /// How far the tool has risen where the tip is in a direction.
     fn lift(&self, [x, y]: [f64; 2]) -> f64 {
         let ([fx, fy], side) = (self.arc.from, self.arc.side());

@@ -1,7 +1,7 @@
 //! A ball or a torus along an arc about its axis: tubes about circles about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Along, EnvelopePoint, Orbit, STILL, Sector, View, between, length, products};
+use super::{AXIS, Along, EnvelopePoint, Orbit, Sector, View, between, length, products};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Piece, Rim, Shape};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -204,7 +204,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         view: &View,
         sector: Sector,
         tube: &Tube,
-        (mut w, doubt): (f64, f64),
+        (w, doubt): (f64, f64),
         value: &impl Fn(f64, f64) -> [f64; 2],
     ) -> Result<(), Open> {
         let (y, r) = (view.y, tube.radius);
@@ -213,19 +213,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         } = self.along;
         let sign = if tube.beyond { -1.0 } else { 1.0 };
         let tip = |w: f64| [sign * (view.x + across * w), sign * y];
-        let (mut slope, mut step) = (0.0, f64::INFINITY);
-        let mut lift = self.lift(tip(w));
-        for _ in 0..4 {
-            let [f, d] = value(w, lift);
-            (slope, step) = (d, f / d);
-            w -= step;
-            if step.abs() <= 0.1 * self.slack {
-                break;
-            }
-            if (across * step).abs() > STILL * y.abs() {
-                lift = self.lift(tip(w));
-            }
-        }
+        let (w, [slope, step, lift]) = self.zero((w, y), tip, value);
         let x = view.x + across * w;
         let rho = length(x, y);
         let bend = 2.0 * (along * along + across * across * (1.0 + tube.centres.abs() * y * y / (rho * rho * rho)));
