@@ -73,6 +73,28 @@ pub(crate) struct Outline {
     pub(crate) rings: [Vec<Range<usize>>; 2],
 }
 
+impl Outline {
+    /// Marks the patches and the edges that a search settles: `piece` and `rim` return `None` for those that it does not.
+    pub fn settle<S>(
+        &self,
+        search: &mut S,
+        piece: impl Fn(&mut S, &Piece) -> Option<()>,
+        rim: impl Fn(&mut S, &Rim) -> Option<()>,
+        [patches, edges]: [&mut [bool]; 2],
+    ) {
+        for own in &self.pieces {
+            if piece(search, own).is_some() {
+                patches[own.patches.clone()].fill(true);
+            }
+        }
+        for own in &self.rims {
+            if rim(search, own).is_some() {
+                edges[own.edges.clone()].fill(true);
+            }
+        }
+    }
+}
+
 /// The normal of the envelope at a sharp edge, of any length: in the fan of the two faces, where `g = 0`. `sides` is `g` on
 /// both, of which one is negative.
 #[inline]

@@ -1,12 +1,12 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
-use crate::time::circles::{ArcAboutAxis, LevelArc, VerticalArc, VerticalArcPart};
+use crate::time::circles::{ArcAboutAxis, LevelArc, VerticalArc, VerticalArcPart, tip_arc};
 use crate::time::joined::Stretch;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Path, Segment, TipCourse, Turning};
+use sweepsim_motion::{Path, Segment};
 
 /// A motion, and its place in the path.
 #[derive(Clone, Debug)]
@@ -27,6 +27,23 @@ pub(crate) struct PathPart {
     pub joins: bool,
     /// Those that it consists of, if they are several.
     pub joined: Vec<Stretch>,
+}
+
+impl PathPart {
+    /// A part of a move from a time on, without a closed form of its own.
+    pub fn new(segment: Segment, number: u32, [start, share]: [f32; 2]) -> Self {
+        Self {
+            segment,
+            level_arc: None,
+            vertical_arc: None,
+            arc_about_axis: None,
+            number,
+            start,
+            share,
+            joins: false,
+            joined: Vec::new(),
+        }
+    }
 }
 
 /// A tool, and how it is searched.
@@ -110,14 +127,7 @@ pub(crate) fn parts(
             };
             parts.push(PathPart {
                 joins: last == 0 && arcs && grows && segment.turns().len() == 1,
-                segment,
-                level_arc: None,
-                vertical_arc: None,
-                arc_about_axis: None,
-                number: number as u32,
-                start: (n as f64 * share) as f32,
-                share: share as f32,
-                joined: Vec::new(),
+                ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
             });
         }
     };
@@ -197,13 +207,8 @@ pub(crate) fn parts(
 /// its wall is widest: two branches of the envelope meet there. If it is perpendicular to the axis, faces across the tool's axis slide along themselves, parallel to the dexels: they are seen edge-on as long as they
 /// stay in one plane to the last digit.
 fn exact_plane(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
-    let way = path.way(number);
-    let TipCourse::Arc(arc) = way.course else { return None };
+    let (arc, still) = tip_arc(&path.way(number))?;
     let poses = [path.pose(number), path.pose(number + 1)];
-    let still = match way.turning {
-        Turning::Slerp | Turning::Even => true,
-        Turning::Rotary { from, to, .. } => from == to,
-    };
     let along = |v: [f64; 3], k: usize| v[k].abs() == 1.0 && (0..3).all(|other| other == k || v[other] == 0.0);
     let [axis, normal] = [poses[0].axis(), arc.normal()].map(|v| frame.turn_from_world(v));
     let lies = (0..2).any(|k| along(axis, k));
@@ -256,17 +261,7 @@ fn with_shares<C>(
 ) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
     parts.into_iter().enumerate().map(move |(n, (circle, segment))| {
-        let mut part = PathPart {
-            segment,
-            level_arc: None,
-            vertical_arc: None,
-            arc_about_axis: None,
-            number: number as u32,
-            start: (n as f64 * share) as f32,
-            share: share as f32,
-            joins: false,
-            joined: Vec::new(),
-        };
+        let mut part = PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32));
         put(&mut part, circle);
         part
     })
@@ -274,15 +269,8 @@ fn with_shares<C>(
 
 fn on_vertical_arc(number: usize, part: VerticalArcPart) -> PathPart {
     PathPart {
-        segment: part.segment,
-        level_arc: None,
         vertical_arc: Some(part.vertical_arc),
-        arc_about_axis: None,
-        number: number as u32,
-        start: part.start as f32,
-        share: part.share as f32,
-        joins: false,
-        joined: Vec::new(),
+        ..PathPart::new(part.segment, number as u32, [part.start, part.share].map(|x| x as f32))
     }
 }
 
@@ -291,7 +279,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use sweepsim_motion::Law;
-    use sweepsim_motion::{Move, PathBuilder, Pose, RotaryTable};
+    use sweepsim_motion::{Move, PathBuilder, Pose, RotaryTable, TipCourse, Turning};
 
     /// A path of random turns, some of them of rotary axes, with rests.
     fn path(moves: &[([f64; 3], bool, bool)], packed: bool) -> Path {

@@ -39,7 +39,6 @@ pub(crate) fn sweep_level_arc(
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
-    let [patches, edges] = done;
     let mut search = LevelArcSearch {
         heading,
         arc,
@@ -51,16 +50,7 @@ pub(crate) fn sweep_level_arc(
         source,
         side: arc.side(),
     };
-    for piece in &outline.pieces {
-        if search.piece(piece).is_some() {
-            patches[piece.patches.clone()].fill(true);
-        }
-    }
-    for rim in &outline.rims {
-        if search.rim(rim).is_some() {
-            edges[rim.edges.clone()].fill(true);
-        }
-    }
+    outline.settle(&mut search, LevelArcSearch::piece, LevelArcSearch::rim, done);
 }
 
 /// The search along one arc.

@@ -23,7 +23,6 @@ pub(crate) fn sweep_straight(
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
-    let [patches, edges] = done;
     let mut strip = Strip {
         heading,
         lines,
@@ -37,16 +36,7 @@ pub(crate) fn sweep_straight(
         let lowest = heading.tip[2].min(heading.tip[2] + heading.way[2]);
         strip.highest = ceiling.above(lowest, strip.spacing);
     }
-    for piece in &outline.pieces {
-        if strip.piece(piece).is_some() {
-            patches[piece.patches.clone()].fill(true);
-        }
-    }
-    for rim in &outline.rims {
-        if strip.rim(rim).is_some() {
-            edges[rim.edges.clone()].fill(true);
-        }
-    }
+    outline.settle(&mut strip, Strip::piece, Strip::rim, done);
 }
 
 /// The search along one move.

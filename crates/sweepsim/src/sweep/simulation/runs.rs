@@ -114,17 +114,9 @@ impl<'a> Runs<'a> {
             return whole;
         }
         let span = [range[0] as f32, (range[1] - range[0]) as f32];
-        let short = PathPart {
-            segment: part.segment.part(range[0], range[1]),
-            level_arc: None,
-            vertical_arc: None,
-            arc_about_axis: None,
-            number: part.number,
-            start: part.start + part.share * span[0],
-            share: part.share * span[1],
-            joins: false,
-            joined: Vec::new(),
-        };
+        let segment = part.segment.part(range[0], range[1]);
+        let times = [part.start + part.share * span[0], part.share * span[1]];
+        let short = PathPart::new(segment, part.number, times);
         Some((short, [range[0] > 0.0, range[1] < 1.0]))
     }
 

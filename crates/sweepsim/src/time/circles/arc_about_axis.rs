@@ -1,10 +1,11 @@
 //! Arcs about the axis of a tool of revolution that leans or lies, as circles to the last digit: those of programs in tilted planes.
 
+use super::tip_arc::tip_arc;
 use super::vertical_arc::circle;
 use nalgebra::{Rotation3, Unit, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Path, Segment, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Path, Segment, TipArc};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
@@ -63,12 +64,7 @@ impl ArcAboutAxis {
         (count, reach): (usize, f64),
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<(Self, Segment)>> {
-        let way = path.way(number);
-        let TipCourse::Arc(arc) = way.course else { return None };
-        let still = match way.turning {
-            Turning::Slerp | Turning::Even => true,
-            Turning::Rotary { from, to, .. } => from == to,
-        };
+        let (arc, still) = tip_arc(&path.way(number))?;
         let ends = [path.pose(number), path.pose(number + 1)];
         if !still || ends[0].axis() != ends[1].axis() {
             return None;

@@ -1,9 +1,10 @@
 //! Level arcs and helices with which a tool turns that stands along the dexels, as circles to the last digit.
 
+use super::tip_arc::tip_arc;
 use nalgebra::{Matrix3, Rotation2, Rotation3, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Move, Path, Pose, Segment, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Move, Path, Pose, Segment, TipArc};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
@@ -74,12 +75,7 @@ impl LevelArc {
         (segments, symmetric, reach): (&[Segment], bool, f64),
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<(Self, Segment)>> {
-        let way = path.way(number);
-        let TipCourse::Arc(arc) = way.course else { return None };
-        let still = match way.turning {
-            Turning::Slerp | Turning::Even => true,
-            Turning::Rotary { from, to, .. } => from == to,
-        };
+        let (arc, still) = tip_arc(&path.way(number))?;
         let ends = [path.pose(number), path.pose(number + 1)];
         let upright = ends.iter().all(|pose| frame.turn_from_world(pose.axis()) == UP);
         let [x, y, sign] = frame.turn_from_world(arc.normal());

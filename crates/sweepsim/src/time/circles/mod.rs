@@ -2,8 +2,10 @@
 
 mod arc_about_axis;
 mod level_arc;
+mod tip_arc;
 mod vertical_arc;
 
 pub(crate) use arc_about_axis::ArcAboutAxis;
 pub(crate) use level_arc::LevelArc;
+pub(crate) use tip_arc::tip_arc;
 pub(crate) use vertical_arc::{VerticalArc, VerticalArcPart};

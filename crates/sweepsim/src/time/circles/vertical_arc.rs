@@ -1,9 +1,10 @@
 //! Arcs of the tip in planes that hold the direction of the dexels, or that are perpendicular to it and hold the axis of a tool that lies, as circles to the last digit.
 
+use super::tip_arc::tip_arc;
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Move, Path, Pose, Segment, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Move, Path, Pose, Segment, TipArc};
 
 /// Arcs that go less than this many tip displacements across the dexels have no reliable plane.
 const SHORTEST: f64 = 1e3;
@@ -146,14 +147,9 @@ impl VerticalArc {
         (frame, reach): (&Frame, f64),
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<VerticalArcPart>> {
-        let way = path.way(number);
-        let TipCourse::Arc(arc) = way.course else { return None };
+        let (arc, still) = tip_arc(&path.way(number))?;
         let ends = [path.pose(number), path.pose(number + 1)];
         let axis = frame.turn_from_world(ends[0].axis());
-        let still = match way.turning {
-            Turning::Slerp | Turning::Even => true,
-            Turning::Rotary { from, to, .. } => from == to,
-        };
         let [x, y, z] = frame.turn_from_world(arc.normal());
         let [from, to] = ends.map(|pose| Vector3::from(frame.from_world(pose.tip())));
         let lies = [1.0, -1.0]

@@ -48,7 +48,7 @@ pub(crate) fn sweep_arc_about_axis(
     (arc, segment, slack, height_tolerance): (&ArcAboutAxis, &Segment, f64, f64),
     lines: &mut Collector,
     source: impl Fn(f64) -> Source,
-    [patches, edges]: [&mut [bool]; 2],
+    done: [&mut [bool]; 2],
 ) {
     // The centre of a wide arc has fewer digits than the tool.
     let far = arc.centre.iter().fold(arc.radius, |far, c| far.max(c.abs()));
@@ -75,16 +75,7 @@ pub(crate) fn sweep_arc_about_axis(
         lines,
         source,
     };
-    for piece in &outline.pieces {
-        if orbit.piece(piece).is_some() {
-            patches[piece.patches.clone()].fill(true);
-        }
-    }
-    for rim in &outline.rims {
-        if orbit.rim(rim).is_some() {
-            edges[rim.edges.clone()].fill(true);
-        }
-    }
+    outline.settle(&mut orbit, Orbit::piece, Orbit::rim, done);
 }
 
 /// The number of parts of an arc that are almost straight, seen from a tool of this radius.
