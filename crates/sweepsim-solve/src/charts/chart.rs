@@ -74,7 +74,7 @@ impl<'a, const N: usize> Chart<'a, N> {
     /// Predicts from a position where a preimage of `q` is, and the region that must contain it if it is in the box.
     pub fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
         let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
-        let reach = self.contraction.rest * step.abs() + self.contraction.slack;
+        let reach = self.contraction.rest * step.abs() + self.contraction.error;
         let place = witness.at + step;
         (place, Region::around(&place, &reach))
     }
@@ -135,7 +135,7 @@ impl<'a, const N: usize> Chart<'a, N> {
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
                 let is_last = if is_hidden {
-                    (0..N).all(|i| (next[i] - s[i]).abs() <= LONGEST.max(RESTS * linear.slack[i]))
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= LONGEST.max(RESTS * linear.variable_rounding[i]))
                 } else {
                     step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step)
                 };
@@ -161,16 +161,17 @@ impl<'a, const N: usize> Chart<'a, N> {
             if region.is_empty() {
                 return Outcome::Settled;
             }
-            if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+            if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.variable_rounding[i]) {
                 // As close as rounding allows: a smaller box would not help.
                 let Some(next) = next else {
                     return Outcome::Unclear;
                 };
-                let is_near = (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]));
+                let is_near =
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.variable_rounding[i]));
                 match self.place(&next) {
                     BoxPlace::Outside if is_near => return Outcome::Settled,
                     BoxPlace::Outside => return Outcome::Unclear,
-                    _ if linear.slack.amax() > HIDDEN => is_hidden = true,
+                    _ if linear.variable_rounding.amax() > HIDDEN => is_hidden = true,
                     place => {
                         found(next, place, &scaled, from, sample.seen);
                         return Outcome::Settled;
@@ -188,7 +189,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         SVector::from_fn(|i, _| {
             let part = &self.searched.part[i];
             let end = |x: f64| (x - self.linear.centre[i]) / self.linear.half[i];
-            let most = 1.0 + 2.0 * self.contraction.slack[i];
+            let most = 1.0 + 2.0 * self.contraction.error[i];
             s[i].max(end(part.lo()).max(-most)).min(end(part.hi()).min(most))
         })
     }
@@ -200,7 +201,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         region.intersect(&own);
         region.intersect(&Region::around(
             &predicted,
-            &(self.linear.rest * far + self.linear.slack),
+            &(self.linear.rest * far + self.linear.variable_rounding),
         ));
         predicted
     }
@@ -208,7 +209,7 @@ impl<'a, const N: usize> Chart<'a, N> {
     /// Whether a point that is reached by a step of this length is certainly on the right side of each face: its error is less than the square of the step. Two boxes, of patches that meet smoothly, say, would both own a
     /// point near their common face, or neither, if each came to it from its own side.
     fn tells_sides(&self, next: &SVector<f64, N>, step: f64) -> bool {
-        (0..N).all(|i| (1.0 - next[i].abs()).abs() > step * step || step <= self.linear.slack[i])
+        (0..N).all(|i| (1.0 - next[i].abs()).abs() > step * step || step <= self.linear.variable_rounding[i])
     }
 
     fn place(&self, s: &SVector<f64, N>) -> BoxPlace {

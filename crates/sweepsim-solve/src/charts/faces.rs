@@ -41,7 +41,7 @@ impl BoxPlace {
         let mut place = Self::Inside;
         for i in 0..N {
             let (side, whole, part) = (&bounds[i], &searched.domain[i], &searched.part[i]);
-            let rounding = linear.slack[i] + COORDINATE * side.magnitude() / linear.half[i];
+            let rounding = linear.variable_rounding[i] + COORDINATE * side.magnitude() / linear.half[i];
             let shared = [side.lo() > part.lo(), side.hi() < part.hi()];
             let owned = [
                 x[i] >= side.lo(),
@@ -97,7 +97,7 @@ impl Faces {
             return true;
         }
         let rounding: [f64; N] =
-            std::array::from_fn(|i| 4.0 * linear.slack[i] * linear.half[i] + COORDINATE * x[i].abs());
+            std::array::from_fn(|i| 4.0 * linear.variable_rounding[i] * linear.half[i] + COORDINATE * x[i].abs());
         let is_same = |other: &OnFace| {
             let near = |i: usize| (other.x[i] - x[i]).abs() <= other.rounding[i] + rounding[i];
             other.target == target && other.orientation == linear.orientation && (0..N).all(near)

@@ -20,7 +20,7 @@ pub(crate) struct Linear<const N: usize> {
     weights: SVector<f64, N>,
     pub radius: f64,
     /// Rounding of a prediction.
-    pub slack: SVector<f64, N>,
+    pub variable_rounding: SVector<f64, N>,
     pub orientation: i8,
 }
 
@@ -72,11 +72,11 @@ impl<const N: usize> Linear<N> {
         if !rest.iter().all(|r| r.is_finite()) {
             return None;
         }
-        let slack = SVector::<f64, N>::from_fn(|i, _| {
+        let variable_rounding = SVector::<f64, N>::from_fn(|i, _| {
             let value: f64 = (0..N).map(|k| inverse[(i, k)].abs() * rounding[k]).sum();
             value + 16.0 * f64::EPSILON
         });
-        if !slack.iter().all(|s| s.is_finite()) {
+        if !variable_rounding.iter().all(|s| s.is_finite()) {
             return None;
         }
         let orientation = if determinant > 0.0 { 1 } else { -1 };
@@ -89,7 +89,7 @@ impl<const N: usize> Linear<N> {
             inverse,
             rest,
             smear,
-            slack,
+            variable_rounding,
             orientation,
         })
     }
@@ -117,7 +117,7 @@ impl<const N: usize> Linear<N> {
 
     /// How far a preimage in the box may be from the centre's prediction, in direction `i`.
     pub fn reach(&self, i: usize) -> f64 {
-        self.rest.row(i).iter().sum::<f64>() + self.slack[i]
+        self.rest.row(i).iter().sum::<f64>() + self.variable_rounding[i]
     }
 
     /// `s − K(Φ(x(s)) − q)`: the prediction from `s` for a preimage of `q`.
@@ -136,9 +136,9 @@ impl<const N: usize> Linear<N> {
             return strips;
         }
         for i in 0..N {
-            // |Kᵢ (q − Φ)| ≤ 1 + reach; twice the slack is for the rounding here and for each row, of numbers no larger than those of Φ.
+            // |Kᵢ (q − Φ)| ≤ 1 + reach; twice the rounding is for the rounding here and for each row, of numbers no larger than those of Φ.
             let factor = self.inverse[(i, 1)];
-            let limit = (1.0 + self.reach(i) + 2.0 * self.slack[i]) * (1.0 + 8.0 * f64::EPSILON);
+            let limit = (1.0 + self.reach(i) + 2.0 * self.variable_rounding[i]) * (1.0 + 8.0 * f64::EPSILON);
             let slopes: [f64; N] = std::array::from_fn(|k| if k == 1 { 0.0 } else { -self.inverse[(i, k)] / factor });
             let width = limit / factor.abs();
             // With a factor of 0 the numbers are infinite or NaN: they narrow nothing.
@@ -221,23 +221,23 @@ pub(crate) struct Contraction<const N: usize> {
     /// `R(I − R)⁻¹`.
     pub rest: Square<N>,
     /// `(I − R)⁻¹e`.
-    pub slack: SVector<f64, N>,
+    pub error: SVector<f64, N>,
 }
 
 impl<const N: usize> Linear<N> {
     /// For a spectral radius below 1.
     pub fn contraction(&self) -> Option<Contraction<N>> {
-        Contraction::new(&self.rest, &self.slack, &self.weights, self.radius)
+        Contraction::new(&self.rest, &self.variable_rounding, &self.weights, self.radius)
     }
 }
 
 impl<const N: usize> Contraction<N> {
     /// For `R` and `e`, with positive weights of the directions and a bound of the maximum norm of `R` with these weights that is below 1.
-    pub fn new(rest: &Square<N>, slack: &SVector<f64, N>, weights: &SVector<f64, N>, norm: f64) -> Option<Self> {
+    pub fn new(rest: &Square<N>, error: &SVector<f64, N>, weights: &SVector<f64, N>, norm: f64) -> Option<Self> {
         // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of nonnegative terms. After k factors the omitted rest is, row by row,
         // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large, in the norm with the weights.
         let rest = Square::<N>::from_fn(|i, j| rest[(i, j)] * weights[j] / weights[i]);
-        let slack = slack.component_div(weights);
+        let error = error.component_div(weights);
         let (mut sum, mut power, mut left) = (Square::<N>::identity() + rest, rest, norm * norm);
         while left > 1e-3 * (1.0 - norm) {
             power *= power;
@@ -248,13 +248,13 @@ impl<const N: usize> Contraction<N> {
         let remainder = left / (1.0 - norm) + 64.0 * f64::EPSILON;
         let spread = sum * rest;
         let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);
-        let (own, of_slack) = (remainder * most(&spread), remainder * most(&sum));
-        let largest = slack.amax();
+        let (own, of_error) = (remainder * most(&spread), remainder * most(&sum));
+        let largest = error.amax();
         let contraction = Self {
             rest: Square::<N>::from_fn(|i, j| (spread[(i, j)] + own) * weights[i] / weights[j]),
-            slack: (sum * slack).map(|x| x + of_slack * largest).component_mul(weights),
+            error: (sum * error).map(|x| x + of_error * largest).component_mul(weights),
         };
-        let finite = contraction.rest.iter().chain(&contraction.slack).all(|x| x.is_finite());
+        let finite = contraction.rest.iter().chain(&contraction.error).all(|x| x.is_finite());
         finite.then_some(contraction)
     }
 }
@@ -274,7 +274,7 @@ mod tests {
             smear: [0.0; 3],
             weights,
             radius,
-            slack: Vector3::new(1e-12, 2e-12, 3e-12),
+            variable_rounding: Vector3::new(1e-12, 2e-12, 3e-12),
             orientation: 1,
         }
     }
@@ -287,7 +287,7 @@ mod tests {
             let linear = preconditioned(rest, Vector3::repeat(1.0), norm);
             let found = linear.contraction().unwrap();
             let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
-            let (exact, slack) = (rest * inverse, inverse * linear.slack);
+            let (exact, error) = (rest * inverse, inverse * linear.variable_rounding);
             let rounding = 1e-13 / (1.0 - norm);
             for k in 0..9 {
                 assert!(
@@ -296,7 +296,7 @@ mod tests {
             }
             for k in 0..3 {
                 assert!(
-                    found.slack[k] >= slack[k] * (1.0 - rounding) && found.slack[k] <= slack[k] + 2e-3 * slack.amax()
+                    found.error[k] >= error[k] * (1.0 - rounding) && found.error[k] <= error[k] + 2e-3 * error.amax()
                 );
             }
         }
@@ -317,14 +317,14 @@ mod tests {
             let linear = preconditioned(rest, weights, radius);
             let found = linear.contraction().unwrap();
             let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
-            let (exact, slack) = (rest * inverse, inverse * linear.slack);
+            let (exact, error) = (rest * inverse, inverse * linear.variable_rounding);
             for k in 0..9 {
                 prop_assert!(found.rest[k] >= exact[k] * (1.0 - 1e-10) - 1e-14);
                 // Closely, up to the differences of the weights.
                 prop_assert!(found.rest[k] <= exact[k] + 1e-2 * (1.0 + exact.amax()) * weights.amax() / weights.amin());
             }
             for k in 0..3 {
-                prop_assert!(found.slack[k] >= slack[k] * (1.0 - 1e-10));
+                prop_assert!(found.error[k] >= error[k] * (1.0 - 1e-10));
             }
         }
     }

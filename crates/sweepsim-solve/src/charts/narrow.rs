@@ -210,17 +210,18 @@ where
         let of_values =
             through(&|k| rounding[k] + 16.0 * f64::EPSILON * (sample.value[k].abs() + range[k].magnitude()));
         let of_places = |j: usize| 16.0 * f64::EPSILON * self.bounds[j].magnitude() / self.half[j];
-        let slack = Vector::<N>::from_fn(|j, _| of_values[j] + if self.is_own[j] { of_places(j) } else { 0.0 });
-        let known = change + through(&|k| range[k].radius()) + slack * 2.0;
+        let variable_rounding =
+            Vector::<N>::from_fn(|j, _| of_values[j] + if self.is_own[j] { of_places(j) } else { 0.0 });
+        let known = change + through(&|k| range[k].radius()) + variable_rounding * 2.0;
         let error = known + step.abs();
-        let reach = Contraction::new(&self.rest, &error, &self.weights, self.radius)?.slack;
+        let reach = Contraction::new(&self.rest, &error, &self.weights, self.radius)?.error;
         // Once more, about where the first step leads.
         let far = Vector::<N>::from_fn(|j, _| reach[j].min(1.0 + at[j].abs()));
         let near = known + self.rest * far;
         let mut share = 1.0;
         let mut part = *self.bounds;
         for j in (0..N).filter(|j| self.is_own[*j]) {
-            let (middle, most) = (at[j] + step[j], 1.001 * near[j] + ROUNDINGS * slack[j]);
+            let (middle, most) = (at[j] + step[j], 1.001 * near[j] + ROUNDINGS * variable_rounding[j]);
             let (lo, hi) = ((middle - most).max(-1.0), (middle + most).min(1.0));
             if !(middle.is_finite() && most.is_finite()) {
                 return None;

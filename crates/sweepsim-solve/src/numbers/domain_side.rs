@@ -1,13 +1,13 @@
 //! From inner coordinates, in which a side of the domain is `[0, 1]`, to the domain's own: `lo + s (hi − lo)`, rounded to the side asked for.
 //!
 //! The sum is computed in double-double precision, at extreme scales after multiplication by a power of two that makes the larger end about 1. It differs from the exact
-//! one by less than [`SLACK`] of the larger end, so a step to the neighbouring number on either side bounds it. The bounds are within two units
+//! one by less than [`ROUNDING`] of the larger end, so a step to the neighbouring number on either side bounds it. The bounds are within two units
 //! in the last place, wherever the side lies and however wide it is.
 
 use super::{Double, Enclosure};
 
 /// A bound on the error of the computed sum, relative to the larger end. The operations err by `2⁻¹⁰⁰` each; `|s|` is at most 2.
-const SLACK: f64 = f64::from_bits((1023 - 90) << 52);
+const ROUNDING: f64 = f64::from_bits((1023 - 90) << 52);
 
 /// A side of a domain.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct DomainSide {
     width: Double,
     /// Factors back from that scale: two, since one may overflow.
     up: [f64; 2],
-    slack: f64,
+    rounding: f64,
 }
 
 impl DomainSide {
@@ -28,29 +28,29 @@ impl DomainSide {
         lo: Double::new(0.0),
         width: Double::new(1.0),
         up: [1.0; 2],
-        slack: 4.0 * SLACK,
+        rounding: 4.0 * ROUNDING,
     };
 
     pub(crate) fn new(side: Enclosure) -> Self {
         let magnitude = side.magnitude();
         if (1e-200..1e200).contains(&magnitude) {
-            return Self::scaled(side, [1.0; 2], [1.0; 2], 4.0 * SLACK * magnitude);
+            return Self::scaled(side, [1.0; 2], [1.0; 2], 4.0 * ROUNDING * magnitude);
         }
         let exponent = magnitude.max(f64::MIN_POSITIVE).log2().floor() as i32;
         let (half, rest) = (exponent / 2, exponent - exponent / 2);
         let down = [2f64.powi(-half), 2f64.powi(-rest)];
         // The scaled magnitude is below 4, since the logarithm rounds.
-        Self::scaled(side, down, [2f64.powi(half), 2f64.powi(rest)], 16.0 * SLACK)
+        Self::scaled(side, down, [2f64.powi(half), 2f64.powi(rest)], 16.0 * ROUNDING)
     }
 
-    fn scaled(side: Enclosure, down: [f64; 2], up: [f64; 2], slack: f64) -> Self {
+    fn scaled(side: Enclosure, down: [f64; 2], up: [f64; 2], rounding: f64) -> Self {
         let [lo, hi] = [side.lo(), side.hi()].map(|x| Double::new(x * down[0] * down[1]));
         Self {
             side,
             lo,
             width: hi.sub(lo),
             up,
-            slack,
+            rounding,
         }
     }
 
@@ -80,7 +80,7 @@ impl DomainSide {
             1.0 => self.side.hi(),
             _ => {
                 let sum = self.sum(s);
-                let bound = self.back((sum.hi + (sum.lo - self.slack)).next_down());
+                let bound = self.back((sum.hi + (sum.lo - self.rounding)).next_down());
                 // Scaling back rounds only if the result is subnormal.
                 let bound = if bound.is_normal() { bound } else { bound.next_down() };
                 self.clamped(s, bound)
@@ -96,7 +96,7 @@ impl DomainSide {
             1.0 => self.side.hi(),
             _ => {
                 let sum = self.sum(s);
-                let bound = self.back((sum.hi + (sum.lo + self.slack)).next_up());
+                let bound = self.back((sum.hi + (sum.lo + self.rounding)).next_up());
                 let bound = if bound.is_normal() { bound } else { bound.next_up() };
                 self.clamped(s, bound)
             }
