@@ -145,8 +145,8 @@ mod tests {
         for (height, near) in [(0.09, true), (0.11, false), (3.0, false)] {
             let pyramid = flat(height);
             let (to_plane, to_pyramid) = (DistanceTo::new(&plane).unwrap(), DistanceTo::new(&pyramid).unwrap());
-            assert_eq!(within(&pyramid, &to_plane, 0.1), near);
-            assert_eq!(within(&plane, &to_pyramid, 0.1), near);
+            assert_eq!(is_certainly_within(&pyramid, &to_plane, 0.1), near);
+            assert_eq!(is_certainly_within(&plane, &to_pyramid, 0.1), near);
         }
     }
 }
