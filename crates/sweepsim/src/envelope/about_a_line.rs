@@ -123,7 +123,6 @@ fn difference(a: Range, b: Range) -> Range {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, PatchMap};
-    use crate::time::framed::FramedMotion;
     use proptest::prelude::*;
     use sweepsim_motion::{Law, Path, Pose, Tool};
     use sweepsim_solve::ChartMap;
@@ -148,13 +147,7 @@ mod tests {
             let elements = PatchForms::all(&tool).0;
             let element = &elements[patch % elements.len()];
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-            let mut map = PatchMap {
-                motion: FramedMotion::new(element.frame()),
-                element,
-                cells: &mut cells,
-                times: &mut times,
-                size: SIZE,
-            };
+            let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
             let width = 10_f64.powf(size);
             let bounds: [Enclosure; 3] = std::array::from_fn(|k| {
                 let lower = (place[k] - share[k] * width).max(0.0);

@@ -217,7 +217,6 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, EdgeMap, JointSide, PatchMap, PlacedMap};
-    use crate::time::framed::FramedMotion;
     use proptest::prelude::*;
     use sweepsim_motion::{Apt, Law, Path, Pose, Segment, Tool};
     use sweepsim_solve::{ChartMap, Enclosure};
@@ -291,13 +290,7 @@ mod tests {
             let [u, v, t] = place;
             for element in &patches {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-                let mut map = PatchMap {
-                    motion: FramedMotion::new(element.frame()),
-                    element,
-                    cells: &mut cells,
-                    times: &mut times,
-                    size: SIZE,
-                };
+                let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
                 let g = |map: &PatchMap, u: f64| map.evaluate(&[u, v, t]).value[2];
                 let (mut low, mut high) = (0.0, 1.0);
                 if (g(&map, low) < 0.0) != (g(&map, high) < 0.0) {
@@ -331,13 +324,7 @@ mod tests {
             }
             for element in &edges {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-                let mut map = EdgeMap {
-                    motion: FramedMotion::new(None),
-                    element,
-                    cells: &mut cells,
-                    times: &mut times,
-                    size: SIZE,
-                };
+                let mut map = EdgeMap::new(element, &mut cells, &mut times, SIZE);
                 let cell = map.place(&around([u, t], shares, size));
                 prop_assert!(!map.is_absent(&cell, &map.evaluate(&[u, t]).value), "edge");
             }
@@ -353,13 +340,7 @@ mod tests {
             let mut bottoms = 0;
             for element in &patches {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-                let mut map = PatchMap {
-                    motion: FramedMotion::new(element.frame()),
-                    element,
-                    cells: &mut cells,
-                    times: &mut times,
-                    size: SIZE,
-                };
+                let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
                 let cell = map.place(&[Enclosure::UNIT, Enclosure::UNIT, Enclosure::hull(start, start + 0.1)]);
                 let is_near = map.values(&cell).is_some_and(|[x, y, _]| x.contains(line[0]) && y.contains(line[1]));
                 bottoms += usize::from(is_near && map.is_absent(&cell, &line));

@@ -141,7 +141,6 @@ fn not_positive(coefficients: &[f64]) -> Range {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, PatchMap};
-    use crate::time::framed::FramedMotion;
     use proptest::prelude::*;
     use sweepsim_motion::{Law, Path, Pose, Tool};
     use sweepsim_solve::{ChartMap, Enclosure};
@@ -177,13 +176,7 @@ mod tests {
             let mut tips = 0;
             for element in &PatchForms::all(&Tool::ball(2.0, 7.0).unwrap()).0 {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-                let mut map = PatchMap {
-                    motion: FramedMotion::new(element.frame()),
-                    element,
-                    cells: &mut cells,
-                    times: &mut times,
-                    size: Size { spacing: [0.1; 2], system_rounding: ROUNDING },
-                };
+                let mut map = PatchMap::new(element, &mut cells, &mut times, Size { spacing: [0.1; 2], system_rounding: ROUNDING });
                 for tip in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
                     let from_line = |map: &PatchMap, at: [f64; 2]| {
                         let [x, y, _] = map.evaluate(&[at[0], at[1], t]).value;

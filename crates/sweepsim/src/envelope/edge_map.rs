@@ -26,8 +26,20 @@ pub(crate) struct EdgeMap<'a> {
     pub element: &'a PatchForms,
     pub cells: &'a mut Cells,
     pub times: &'a mut Times,
-    pub motion: FramedMotion<'a>,
+    motion: FramedMotion<'a>,
     pub size: Size,
+}
+
+impl<'a> EdgeMap<'a> {
+    pub fn new(element: &'a PatchForms, cells: &'a mut Cells, times: &'a mut Times, size: Size) -> Self {
+        Self {
+            element,
+            cells,
+            times,
+            motion: FramedMotion::new(None),
+            size,
+        }
+    }
 }
 
 impl ChartMap<2> for EdgeMap<'_> {

@@ -30,12 +30,24 @@ pub(crate) struct PatchMap<'a> {
     pub element: &'a PatchForms,
     pub cells: &'a mut Cells,
     pub times: &'a mut Times,
-    pub motion: FramedMotion<'a>,
+    motion: FramedMotion<'a>,
     pub size: Size,
 }
 
 fn pair(range: Enclosure) -> (f64, f64) {
     (range.lo(), range.hi())
+}
+
+impl<'a> PatchMap<'a> {
+    pub fn new(element: &'a PatchForms, cells: &'a mut Cells, times: &'a mut Times, size: Size) -> Self {
+        Self {
+            element,
+            cells,
+            times,
+            motion: FramedMotion::new(element.frame()),
+            size,
+        }
+    }
 }
 
 impl ChartMap<3> for PatchMap<'_> {
@@ -306,13 +318,7 @@ mod tests {
             let rise = sign * 10_f64.powf(-digits);
             let segment = straight([f64::cos(angle), f64::sin(angle), rise]);
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-            let mut map = PatchMap {
-                motion: FramedMotion::new(element.frame()),
-                element,
-                cells: &mut cells,
-                times: &mut times,
-                size: SIZE,
-            };
+            let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
             let negative = |map: &PatchMap, v: f64| map.evaluate(&[place, v, 0.5]).value[2] < 0.0;
             let (mut low, mut high) = (0.0, 1.0);
             let at_pole = negative(&map, low);
@@ -342,13 +348,7 @@ mod tests {
             let element = &elements[0];
             let segment = straight([1.0, 0.0, 0.0]);
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-            let mut map = PatchMap {
-                motion: FramedMotion::new(element.frame()),
-                element,
-                cells: &mut cells,
-                times: &mut times,
-                size: SIZE,
-            };
+            let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
             let cell = map.place(&[Enclosure::hull(start, start + 0.1), Enclosure::hull(0.0, 0.1), Enclosure::UNIT]);
             let values = map.values(&cell).unwrap();
             let jacobian = map.jacobian(&cell);
@@ -365,13 +365,7 @@ mod tests {
             let width = 0.1_f64.powi(size);
             for element in &PatchForms::all(&Tool::flat(2.0, 7.0).unwrap()).0 {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-                let mut map = PatchMap {
-                    motion: FramedMotion::new(element.frame()),
-                    element,
-                    cells: &mut cells,
-                    times: &mut times,
-                    size: SIZE,
-                };
+                let mut map = PatchMap::new(element, &mut cells, &mut times, SIZE);
                 let g = |map: &PatchMap, u: f64| map.evaluate(&[u, 0.5, 0.5]).value[2];
                 let (mut low, mut high) = (0.1, 0.9);
                 if g(&map, low) * g(&map, high) >= 0.0 {

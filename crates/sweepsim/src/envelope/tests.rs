@@ -4,7 +4,6 @@ use super::{OnPatch, PatchMap, ROOT, Size};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::methods::lattice::Lattice;
-use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use proptest::prelude::*;
 use sweepsim_dexel::Grid;
@@ -160,13 +159,7 @@ fn size() -> Size {
 /// What a search finds, and its numbers of boxes, charts and evaluations.
 fn searched(element: &PatchForms, segment: &Segment, lines: &Lattice, always: bool) -> (Found, [u64; 3]) {
     let (mut times, mut cells) = (Times::new(segment), Cells::new(element));
-    let map = PatchMap {
-        motion: FramedMotion::new(element.frame()),
-        element,
-        cells: &mut cells,
-        times: &mut times,
-        size: size(),
-    };
+    let map = PatchMap::new(element, &mut cells, &mut times, size());
     let mut solver = ChartSolver::new(ChartOptions::default().boxes(20_000));
     let mut found = Found::default();
     let mut map = Forgetting { map, always };
@@ -273,13 +266,7 @@ fn memory_of_a_long_search_is_bounded() {
     let element = &PatchForms::all(&Tool::ball(2.0, 7.0).unwrap()).0[0];
     for direction in 0..3 {
         let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
-        let map = PatchMap {
-            motion: FramedMotion::new(element.frame()),
-            element,
-            cells: &mut cells,
-            times: &mut times,
-            size: size(),
-        };
+        let map = PatchMap::new(element, &mut cells, &mut times, size());
         let mut map = Endless { map, direction };
         let mut solver = ChartSolver::new(ChartOptions::default().boxes(BOXES));
         solver.solve(&mut map, ROOT, &Everywhere, &mut Found::default(), &CancelOnly(&()));

@@ -259,7 +259,6 @@ mod tests {
     use super::*;
     use crate::cutter::{cells::Cells, patch_forms::PatchForms};
     use crate::envelope::{EdgeMap, PatchMap, PlacedMap, Size};
-    use crate::time::framed::FramedMotion;
     use crate::time::pieces::Times;
     use proptest::prelude::*;
     use sweepsim_motion::{Pose, Segment};
@@ -296,8 +295,7 @@ mod tests {
             for (patch, element) in tool.patches().iter().zip(&faces) {
                 let motion = PatchMotion::new(patch, &segment);
                 let mut cells = Cells::new(element);
-                let own = FramedMotion::new(element.frame());
-                let map = PatchMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
+                let map = PatchMap::new(element, &mut cells, &mut times, SIZE);
                 let [x, y, g] = map.evaluate(&at).value;
                 let [a, b] = plane(motion.position(), &at);
                 prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
@@ -319,8 +317,7 @@ mod tests {
             for (edge, element) in tool.edges().iter().zip(&rims) {
                 let motion = EdgeMotion::new(edge, &segment);
                 let mut cells = Cells::new(element);
-                let own = FramedMotion::new(None);
-                let map = EdgeMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
+                let map = EdgeMap::new(element, &mut cells, &mut times, SIZE);
                 let origin = [at[0], at[2]];
                 let sample = map.evaluate(&origin);
                 let [a, b] = plane(motion.position(), &origin);

@@ -12,7 +12,6 @@ use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::translation::{self, Ceiling, Collector, Elements, Grazed, Heading};
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
-use crate::time::framed::FramedMotion;
 use crate::time::over::{DyadicInterval, Over, comes_near};
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
@@ -319,13 +318,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         harvest: &'b mut Harvest,
     ) -> (PatchMap<'b>, impl Sink<3, OnPatch>) {
         let element = &self.cutter.patches[number];
-        let map = PatchMap {
-            motion: FramedMotion::new(element.frame()),
-            element,
-            cells: &mut cells[number],
-            times,
-            size: self.size,
-        };
+        let map = PatchMap::new(element, &mut cells[number], times, self.size);
         let sink = harvest.reaper(move |found: &Preimage<3, OnPatch>| {
             Some(Crossing {
                 z: found.seen.height.at(&found.x, &found.from),
@@ -367,13 +360,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         cells: &'b mut [Cells],
         harvest: &'b mut Harvest,
     ) -> (EdgeMap<'b>, impl Sink<2, OnEdge>) {
-        let map = EdgeMap {
-            motion: FramedMotion::new(None),
-            element: &self.cutter.edges[number],
-            cells: &mut cells[number],
-            times,
-            size: self.size,
-        };
+        let map = EdgeMap::new(&self.cutter.edges[number], &mut cells[number], times, self.size);
         let sink = harvest.reaper(move |found: &Preimage<2, OnEdge>| {
             let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
             if (a < 0.0) == (b < 0.0) {
