@@ -38,6 +38,8 @@ pub struct MeridianCurve {
     pub directions: [[f64; 2]; 2],
     /// Its shape.
     pub shape: MeridianShape,
+    /// Control points and weights of a spline; none for lines and arcs.
+    pub controls: Vec<([f64; 2], f64)>,
     /// The [patches](Tool::patches) of its surface of revolution.
     pub patches: Range<usize>,
     /// The [edges](Tool::edges) where it begins: none if it joins the curve before it smoothly.
@@ -82,6 +84,13 @@ impl Tool {
                         start: arc.start,
                         sweep: arc.sweep,
                     },
+                },
+                controls: match &piece.shape {
+                    Shape::Bezier(curve) => {
+                        let points = curve.points.iter().map(|point| (*point).into());
+                        points.zip(curve.weights.iter().copied()).collect()
+                    }
+                    _ => Vec::new(),
                 },
                 patches: patches - count..patches,
                 edges: edges - rims..edges,

@@ -1,0 +1,138 @@
+//! A stretch of a motion with bounds on how fast its tip and axis move and bend.
+
+use nalgebra::Vector3;
+use sweepsim_motion::Segment;
+
+/// Where the tip is and where the axis points.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    /// The tip.
+    pub tip: Vector3<f64>,
+    /// The unit vector from the tip to the holder.
+    pub axis: Vector3<f64>,
+}
+
+/// How fast something moves, and how fast that changes, for `t` in `[0, 1]`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Rates {
+    pub speed: f64,
+    pub bend: f64,
+}
+
+/// A segment of a move with what is known of it for all times.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretch {
+    segment: Segment,
+    /// The move, and the times in it at which the stretch begins and ends.
+    pub number: usize,
+    pub times: [f64; 2],
+    /// The way of the tip stays in the box of these.
+    pub low: Vector3<f64>,
+    pub high: Vector3<f64>,
+    tip: Rates,
+    axis: Rates,
+}
+
+impl Stretch {
+    pub fn new(segment: Segment, number: usize, times: [f64; 2]) -> Self {
+        let (points, weights) = segment.points();
+        let control = || points.iter().zip(&weights).map(|(point, weight)| point / *weight);
+        let low = control().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(&p));
+        let high = control().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(&p));
+        let axes: Vec<_> = segment.turns().iter().map(|turn| turn.column(2).into_owned()).collect();
+        let (tip, axis) = (rates(&points, &weights), rates(&axes, segment.weights()));
+        Self {
+            segment,
+            number,
+            times,
+            low,
+            high,
+            tip,
+            axis,
+        }
+    }
+
+    /// Whether the axis stays the same.
+    pub fn keeps_axis(&self) -> bool {
+        self.axis.speed == 0.0
+    }
+
+    pub fn at(&self, t: f64) -> Placement {
+        let (turn, tip) = self.segment.at(t);
+        Placement {
+            tip: tip.into(),
+            axis: turn.column(2).into_owned(),
+        }
+    }
+
+    /// The time in the move.
+    pub fn time(&self, t: f64) -> f64 {
+        self.times[0] + (self.times[1] - self.times[0]) * self.segment.time(t)
+    }
+
+    /// How far a point within `reach` of the tip may move in a time.
+    pub fn travel(&self, reach: f64, duration: f64) -> f64 {
+        (self.tip.speed + self.axis.speed * reach) * duration
+    }
+
+    /// By how much a point of the tool within `reach` of the tip may go beyond the line between where it is at the ends
+    /// of a time, in any direction.
+    ///
+    /// Spin about the axis moves no point into or out of a solid of revolution, so the tool may be taken to turn with
+    /// `ω = a × a′`. A point `p` then has `|p″| ≤ |b″| + (|ω′| + |ω|²) r` with `|ω| = |a′|` and `|ω′| ≤ |a″|`, and a
+    /// function with `f″ ≥ −m` is at most `m h²/8` above its chord over a time `h`.
+    pub fn bend(&self, reach: f64, duration: f64) -> f64 {
+        let turning = self.axis.bend + self.axis.speed * self.axis.speed;
+        (self.tip.bend + turning * reach) * duration * duration / 8.0
+    }
+}
+
+/// Bounds of the first two derivatives of `P/w` by control values, seen from the middle one.
+///
+/// With `q = P/w` from a centre, `q′ = (P′ − q w′)/w` and `q″ = (P″ − 2 q′ w′ − q w″)/w`; each part is bounded by its
+/// own coefficients, as Bernstein forms lie in the hull of theirs.
+fn rates(points: &[Vector3<f64>], weights: &[f64]) -> Rates {
+    let n = points.len() - 1;
+    if n == 0 {
+        return Rates::default();
+    }
+    let centre = points[n / 2] / weights[n / 2];
+    let own: Vec<Vector3<f64>> = points.iter().zip(weights).map(|(p, w)| p - centre * *w).collect();
+    let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let degree = n as f64;
+    let radius = largest(&mut own.iter().zip(weights).map(|(p, w)| p.norm() / w));
+    let first = degree * largest(&mut own.windows(2).map(|p| (p[1] - p[0]).norm()));
+    let weight_first = degree * largest(&mut weights.windows(2).map(|w| (w[1] - w[0]).abs()));
+    let twice = degree * (degree - 1.0);
+    let second = twice * largest(&mut own.windows(3).map(|p| (p[2] - p[1] * 2.0 + p[0]).norm()));
+    let weight_second = twice * largest(&mut weights.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs()));
+    let speed = (first + radius * weight_first) / least;
+    let bend = (second + 2.0 * speed * weight_first + radius * weight_second) / least;
+    Rates { speed, bend }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweepsim_motion::Pose;
+
+    #[test]
+    fn rates_hold_differences() {
+        let from = Pose::new([0.0; 3], [0.0, 0.0, 1.0]).expect("a pose");
+        let to = Pose::new([3.0, 4.0, 1.0], [1.0, 0.5, 0.2]).expect("a pose");
+        for segment in Segment::between(&from, &to) {
+            let stretch = Stretch::new(segment, 0, [0.0, 1.0]);
+            let h = 1e-4;
+            for k in 1..99 {
+                let t = f64::from(k) / 100.0;
+                let [a, b, c] = [t - h, t, t + h].map(|t| stretch.at(t).axis);
+                let (first, second) = ((c - a).norm() / (2.0 * h), (c - b * 2.0 + a).norm() / (h * h));
+                assert!(first <= stretch.axis.speed * (1.0 + 1e-6));
+                assert!(second <= stretch.axis.bend * (1.0 + 1e-3));
+                assert!(first > 0.3 * stretch.axis.speed, "{first} {}", stretch.axis.speed);
+            }
+            assert!((stretch.tip.speed - 26_f64.sqrt()).abs() < 1e-12 && stretch.tip.bend < 1e-12);
+        }
+    }
+}

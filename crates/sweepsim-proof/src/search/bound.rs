@@ -1,0 +1,240 @@
+//! How deep a solid may be below the surface near a cell.
+//!
+//! **Lifting.** Let `H` be a cell, `H′` its surroundings, `C` the points of the cutter in `H` at any of the times. Let
+//! the cutter, lifted by a vector `w`, be above some planes `⟨nᵢ, x⟩ = eᵢ`, and every triangle in `H′` below one of
+//! them. The region `Ω ⊂ H′` above all planes is convex and free of surface: all of it is outside of the solid, or all
+//! inside. If one point of it is outside, so is every lifted point, and no point of `C` is deeper than `|w|`. This needs
+//! `|w| ≤ half`, or lifted points may be beyond `H′`. With `dᵢ` the depth of the cutter below plane `i`, the best `w` is
+//! the shortest with `⟨nᵢ, w⟩ ≥ dᵢ`.
+//!
+//! **Slabs.** If for two such normals, alone, the depths are `a − ⟨n, x⟩` and `b − ⟨m, x⟩`, the smaller of both is at
+//! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
+
+use super::reach::During;
+use crate::motion::Run;
+use crate::target::{Cell, Triangle, Way, is_outside};
+use nalgebra::{Matrix3, Vector3};
+use smallvec::SmallVec;
+
+/// A bound of the depth, and what it was found with.
+#[derive(Clone, Copy)]
+pub(super) struct Depth {
+    pub value: f64,
+    /// The direction in which the solid may be lifted off.
+    pub normal: Vector3<f64>,
+    /// A place that may be about as deep.
+    pub place: Option<Vector3<f64>>,
+}
+
+/// So many of the directions are tried together.
+const TOGETHER: usize = 4;
+/// Steps of a descent.
+const STEPS: usize = 8;
+
+/// A solid near a cell.
+pub(super) struct Above<'a> {
+    pub run: &'a Run<'a>,
+    pub during: During,
+    pub cell: &'a Cell,
+    pub triangles: &'a [Triangle],
+}
+
+impl Above<'_> {
+    /// The least bound that was found; the search for it ends at `enough`.
+    pub fn depth(&self, enough: f64) -> Depth {
+        let ways = self.cell.ways(self.triangles);
+        let mut best = Depth {
+            value: f64::INFINITY,
+            normal: ways.first().map_or_else(Vector3::z, |way| way.normal),
+            place: None,
+        };
+        let below: Vec<f64> = ways.iter().map(|way| self.below(&way.normal)).collect();
+        for (way, below) in ways.iter().zip(&below) {
+            let value = way.top + below;
+            if way.out && value < best.value {
+                (best.value, best.normal) = (value, way.normal);
+            }
+        }
+        if best.value <= enough {
+            return best;
+        }
+        for (i, a) in ways.iter().enumerate().take(TOGETHER) {
+            for (j, b) in ways.iter().enumerate().take(i) {
+                if a.normal.dot(&b.normal) < -0.5 {
+                    self.slab(a, b, &mut best);
+                } else {
+                    self.lift(&[(a, below[i]), (b, below[j])], &mut best);
+                    for (k, c) in ways.iter().enumerate().take(j) {
+                        self.lift(&[(a, below[i]), (b, below[j]), (c, below[k])], &mut best);
+                    }
+                }
+                if best.value <= enough {
+                    return best;
+                }
+            }
+        }
+        self.descend(enough, &mut best);
+        // Only as far as the surroundings are known.
+        if best.value > self.cell.half {
+            best.value = f64::INFINITY;
+        }
+        best
+    }
+
+    /// How far the solid in the cell reaches against a normal.
+    fn below(&self, normal: &Vector3<f64>) -> f64 {
+        let down = -normal;
+        self.during.reach(self.run, &down).min(self.cell.support(&down))
+    }
+
+    fn slab(&self, a: &Way, b: &Way, best: &mut Depth) {
+        if !(a.out && b.out) {
+            return;
+        }
+        let mean = -0.5 * (a.normal + b.normal);
+        let value = 0.5 * (a.top + b.top) + self.cell.support(&mean);
+        if value < best.value && value <= self.cell.half {
+            let off = 0.5 * (a.top - b.top - (a.normal - b.normal).dot(&self.cell.centre));
+            let middle = self.cell.centre + a.normal * off / (1.0 - a.normal.dot(&b.normal)) * 2.0;
+            *best = Depth {
+                value,
+                normal: a.normal,
+                place: Some(middle),
+            };
+        }
+    }
+
+    /// Above several planes at once.
+    fn lift(&self, planes: &[(&Way, f64)], best: &mut Depth) {
+        let mut tops = [f64::NEG_INFINITY; 3];
+        // Each triangle has to be below one of the planes: that which the solid is least below.
+        for piece in self.cell.pieces() {
+            let below = planes.iter().enumerate().map(|(i, (way, below))| {
+                let top = piece.corners.iter().map(|corner| way.normal.dot(corner));
+                let top = top.fold(f64::NEG_INFINITY, f64::max);
+                (top + below, top, i)
+            });
+            if let Some((_, top, i)) = below.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                tops[i] = tops[i].max(top);
+            }
+        }
+        // Planes with nothing below them are not needed, and nothing is lowered.
+        let half = self.cell.half;
+        let used = planes.iter().zip(tops).filter(|(_, top)| *top > f64::NEG_INFINITY);
+        let (mut normals, mut needs, mut own) = (SmallVec::<[Vector3<f64>; 3]>::new(), [0.0; 3], [0.0; 3]);
+        for (i, ((way, below), top)) in used.enumerate() {
+            normals.push(way.normal);
+            needs[i] = (top + below).max(-half);
+            own[i] = (top - way.normal.dot(&self.cell.centre)).max(-half) + 0.01 * half;
+        }
+        let Some(lift) = shortest(&normals, &needs) else {
+            return;
+        };
+        let value = lift.norm();
+        if value >= best.value || value > half {
+            return;
+        }
+        // A point above all planes, within the surroundings.
+        let Some(off) = shortest(&normals, &own).filter(|off| off.amax() <= half) else {
+            return;
+        };
+        if is_outside(&(self.cell.centre + off), self.cell.pieces(), self.triangles) == Some(true) {
+            let normal = lift.try_normalize(1e-9 * half).unwrap_or(normals[0]);
+            (best.value, best.normal, best.place) = (value, normal, None);
+        }
+    }
+
+    /// Turns a normal towards where both solids are farther apart: by the points that touch first.
+    fn descend(&self, enough: f64, best: &mut Depth) {
+        let mut normal = best.normal;
+        let value_of = |normal: &Vector3<f64>| self.cell.top(normal).0 + self.below(normal);
+        let mut value = value_of(&normal);
+        let mut step = 1.0 / self.run.solid.radius().max(1e-3);
+        for _ in 0..STEPS {
+            let apart = self.cell.top(&normal).1 - self.during.farthest(self.run, &-normal);
+            let across = apart - normal * normal.dot(&apart);
+            let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
+                break;
+            };
+            let next = value_of(&turned);
+            if next < value {
+                (normal, value) = (turned, next);
+                step *= 1.5;
+            } else {
+                step *= 0.25;
+            }
+            if value <= enough {
+                break;
+            }
+        }
+        if value < best.value && self.cell.way(normal, self.triangles).out {
+            (best.value, best.normal, best.place) = (value, normal, None);
+        }
+    }
+
+    /// Whether no point of the solid is in the cell.
+    pub fn misses(&self) -> bool {
+        let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(self.run, &-normal));
+        let away = self.during.core(self.run, &self.cell.centre) - self.cell.centre;
+        let Some(mut normal) = away.try_normalize(1e-12) else {
+            return false;
+        };
+        let mut value = gap(&normal);
+        let mut step = 1.0 / self.run.solid.radius().max(1e-3);
+        for _ in 0..2 * STEPS {
+            if value > 0.0 {
+                return true;
+            }
+            let corner = self.cell.centre + normal.map(|c| self.cell.half.copysign(c));
+            let apart = corner - self.during.farthest(self.run, &-normal);
+            let across = apart - normal * normal.dot(&apart);
+            let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
+                return false;
+            };
+            let next = gap(&turned);
+            if next > value {
+                (normal, value) = (turned, next);
+                step *= 1.5;
+            } else {
+                step *= 0.25;
+            }
+        }
+        value > 0.0
+    }
+}
+
+/// The shortest vector `w` with `⟨nᵢ, w⟩ ≥ dᵢ` for all `i`, of those that meet some of them exactly. Any that is found
+/// meets all of them, but for rounding.
+fn shortest(normals: &[Vector3<f64>], needs: &[f64; 3]) -> Option<Vector3<f64>> {
+    let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
+    let meets = |w: &Vector3<f64>| {
+        let all = || normals.iter().zip(needs);
+        all().all(|(normal, need)| normal.dot(w) >= need - 1e-13 * size)
+    };
+    let mut best: Option<Vector3<f64>> = None;
+    let mut take = |w: Vector3<f64>| {
+        if meets(&w) && best.is_none_or(|best| w.norm_squared() < best.norm_squared()) {
+            best = Some(w);
+        }
+    };
+    take(Vector3::zeros());
+    for (i, a) in normals.iter().enumerate() {
+        take(a * needs[i]);
+        for (j, b) in normals.iter().enumerate().take(i) {
+            // w = α a + β b.
+            let cosine = a.dot(b);
+            let scale = 1.0 - cosine * cosine;
+            if scale > 1e-4 {
+                let alpha = (needs[i] - cosine * needs[j]) / scale;
+                let beta = (needs[j] - cosine * needs[i]) / scale;
+                take(a * alpha + b * beta);
+            }
+        }
+    }
+    if let [a, b, c] = normals
+        && let Some(inverse) = Matrix3::from_rows(&[a.transpose(), b.transpose(), c.transpose()]).try_inverse()
+    {
+        take(inverse * Vector3::from(*needs));
+    }
+    best
+}

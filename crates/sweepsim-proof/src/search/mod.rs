@@ -1,0 +1,8 @@
+//! The search for the deepest point.
+
+mod bound;
+mod deepest;
+mod gouge;
+mod reach;
+
+pub use gouge::{Cutter, Enclosed, Limits, deepest};

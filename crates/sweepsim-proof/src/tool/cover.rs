@@ -1,0 +1,247 @@
+//! A tool as convex solids of revolution that cover it.
+//!
+//! The outline is cut where it turns back: at reflex corners, and along concave arcs and splines at points so near to
+//! each other that chords do. The hull of each stretch and of its projection to the axis covers all of the tool that is
+//! nearer to the axis at the heights of the stretch, and every point of the tool is. For a tool whose outline rises all
+//! the way and has no concave curves, the hulls are the tool.
+
+use super::convex::{Convex, ConvexArc};
+use std::f64::consts::{FRAC_PI_2, PI};
+use sweepsim_motion::{MeridianCurve, MeridianShape, Tool};
+
+/// Two directions closer than this, in radians, are one.
+const SAME: f64 = 1e-9;
+
+/// The convex solids that cover a tool, with nothing farther than `tolerance` from it where its outline is concave.
+///
+/// A tool without a profile is covered by the solid of revolution of its control points.
+#[must_use]
+pub fn cover(tool: &Tool, tolerance: f64) -> Vec<Convex> {
+    let curves = tool.meridians();
+    if curves.is_empty() {
+        return vec![around_patches(tool)];
+    }
+    let mut cover = Vec::new();
+    let mut stretch = Stretch::new(curves[0].from);
+    let mut before: Option<[f64; 2]> = None;
+    for curve in &curves {
+        if before.is_some_and(|before| turn(before, curve.directions[0]) < -SAME) {
+            cover.extend(stretch.close());
+            stretch = Stretch::new(curve.from);
+        }
+        if is_convex(curve) {
+            stretch.add(curve);
+        } else {
+            for points in pieces(curve, tolerance) {
+                cover.extend(stretch.close());
+                stretch = Stretch::new(points[0]);
+                stretch.convex.corners.extend(points);
+                stretch.convex.exact = false;
+            }
+            cover.extend(stretch.close());
+            stretch = Stretch::new(curve.to);
+        }
+        before = Some(curve.directions[1]);
+    }
+    cover.extend(stretch.close());
+    cover
+}
+
+/// By how much the direction turns to the left, in radians.
+fn turn(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
+}
+
+fn is_convex(curve: &MeridianCurve) -> bool {
+    match curve.shape {
+        MeridianShape::Line => true,
+        MeridianShape::Arc { sweep, .. } => sweep > 0.0,
+        _ => false,
+    }
+}
+
+/// A stretch of the outline that turns left all the way.
+struct Stretch {
+    convex: Convex,
+    /// How often the outline has gone down or up again: the hull is only the tool if it never does.
+    turned: f64,
+}
+
+impl Stretch {
+    fn new(from: [f64; 2]) -> Self {
+        let convex = Convex {
+            corners: vec![from],
+            arcs: Vec::new(),
+            exact: true,
+        };
+        Self { convex, turned: 0.0 }
+    }
+
+    fn add(&mut self, curve: &MeridianCurve) {
+        let convex = &mut self.convex;
+        convex.corners.push(curve.to);
+        self.turned += f64::from(curve.directions.iter().any(|d| d[1] < -SAME));
+        if let MeridianShape::Arc {
+            centre,
+            radius,
+            start,
+            sweep,
+        } = curve.shape
+        {
+            let count = (sweep / FRAC_PI_2).ceil().max(1.0);
+            for part in 0..count as usize {
+                let normals = [part, part + 1].map(|k| {
+                    let angle = start + sweep * k as f64 / count;
+                    [angle.cos(), angle.sin()]
+                });
+                convex.arcs.push(ConvexArc {
+                    centre,
+                    radius,
+                    normals,
+                });
+                let join = start + sweep * (part + 1) as f64 / count;
+                convex
+                    .corners
+                    .push([centre[0] + radius * join.cos(), centre[1] + radius * join.sin()]);
+            }
+        }
+    }
+
+    /// The hull with the axis at the same heights; nothing of a stretch without length.
+    fn close(&mut self) -> Option<Convex> {
+        let mut convex = std::mem::take(&mut self.convex);
+        if convex.corners.len() < 2 {
+            return None;
+        }
+        let [low, high] = convex.heights();
+        convex.corners.extend([[0.0, low], [0.0, high]]);
+        convex.exact &= self.turned == 0.0;
+        // Points inside the hull of the others cost time: the support of a hull is that of its extreme points.
+        convex.corners = extreme(convex.corners);
+        Some(convex)
+    }
+}
+
+/// The corners of the hull of points (Andrew's monotone chain).
+fn extreme(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut chain: Vec<[f64; 2]> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..] {
+                let area = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                // Only what is certainly inside is left out.
+                if area >= 0.0 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain
+    };
+    let mut hull = half(&mut points.iter().copied());
+    hull.extend(half(&mut points.iter().rev().copied()));
+    hull.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    hull.dedup();
+    hull
+}
+
+/// Points whose hulls cover a curve, piece by piece, none wider than the tolerance.
+fn pieces(curve: &MeridianCurve, tolerance: f64) -> Vec<Vec<[f64; 2]>> {
+    match curve.shape {
+        MeridianShape::Arc {
+            centre,
+            radius,
+            start,
+            sweep,
+        } => {
+            // The material is outside of the circle, and so are the chords' ends; between them, chords are inside.
+            let step = 2.0 * (1.0 - (tolerance / radius).min(1.0)).acos();
+            let count = (sweep.abs() / step.min(FRAC_PI_2)).ceil().clamp(1.0, 1e4);
+            let at = |k: f64| {
+                let angle = start + sweep * k / count;
+                [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
+            };
+            (0..count as usize)
+                .map(|k| vec![at(k as f64), at((k + 1) as f64)])
+                .collect()
+        }
+        _ => {
+            let mut open = vec![curve.controls.clone()];
+            let mut flat = Vec::new();
+            while let Some(piece) = open.pop() {
+                let points: Vec<[f64; 2]> = piece.iter().map(|(point, _)| *point).collect();
+                if thickness(&points) <= tolerance || flat.len() + open.len() > 1 << 12 {
+                    flat.push(points);
+                } else {
+                    let (low, high) = halves(&piece);
+                    open.extend([high, low]);
+                }
+            }
+            flat
+        }
+    }
+}
+
+/// How far the points are from the line between the first and the last.
+fn thickness(points: &[[f64; 2]]) -> f64 {
+    let (a, b) = (points[0], points[points.len() - 1]);
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let length = along[0].hypot(along[1]);
+    let off = |p: &[f64; 2]| {
+        let p = [p[0] - a[0], p[1] - a[1]];
+        (along[0] * p[1] - along[1] * p[0]).abs() / length
+    };
+    if length > 0.0 {
+        points.iter().map(off).fold(0.0, f64::max)
+    } else {
+        PI
+    }
+}
+
+type Control = ([f64; 2], f64);
+
+/// Both halves of a rational Bézier curve (de Casteljau).
+fn halves(controls: &[Control]) -> (Vec<Control>, Vec<Control>) {
+    let middle = |(p, v): &Control, (q, w): &Control| {
+        let weight = 0.5 * (v + w);
+        ([0, 1].map(|k| 0.5 * (p[k] * v + q[k] * w) / weight), weight)
+    };
+    let mut row = controls.to_vec();
+    let (mut low, mut high) = (vec![row[0]], vec![row[row.len() - 1]]);
+    while row.len() > 1 {
+        row = row.windows(2).map(|pair| middle(&pair[0], &pair[1])).collect();
+        low.push(row[0]);
+        high.push(row[row.len() - 1]);
+    }
+    high.reverse();
+    (low, high)
+}
+
+/// The control points of patches, turned about the axis.
+fn around_patches(tool: &Tool) -> Convex {
+    let mut corners = Vec::new();
+    for patch in tool.patches() {
+        let weights = patch.weight().coefficients();
+        for (i, weight) in weights.iter().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
+            corners.push([x.hypot(y), z]);
+        }
+    }
+    let (low, high) = corners
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), corner| {
+            (low.min(corner[1]), high.max(corner[1]))
+        });
+    corners.extend([[0.0, low], [0.0, high]]);
+    Convex {
+        corners: extreme(corners),
+        arcs: Vec::new(),
+        exact: false,
+    }
+}

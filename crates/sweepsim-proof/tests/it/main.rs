@@ -1,0 +1,3 @@
+//! Proofs against what is known.
+
+mod walls;
