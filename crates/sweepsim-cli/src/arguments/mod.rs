@@ -143,6 +143,9 @@ pub(crate) struct JudgeOptions {
     /// what they touch beside a dexel is found as well.
     #[arg(long)]
     pub sure: bool,
+    /// Proves nothing between the lines of the dexels.
+    #[arg(long)]
+    pub no_proof: bool,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
     #[arg(long)]
     pub moves: bool,

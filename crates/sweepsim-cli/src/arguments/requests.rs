@@ -98,6 +98,7 @@ impl JudgeOptions {
         let mut judging = job::Judging::default();
         (judging.first, judging.clearance) = (self.first, self.clearance);
         (judging.sure, judging.moves) = (self.sure, self.moves);
+        judging.proof = !self.no_proof;
         judging
     }
 }

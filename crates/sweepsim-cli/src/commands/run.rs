@@ -66,12 +66,11 @@ fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, 
         let total = process.start.elapsed().as_secs_f64();
         summary(outcome.plan(), report, &outputs, threads, total).print()?;
     }
-    Ok(if report.verdict == Some(Verdict::Fail) {
-        ExitCode::FAILURE
-    } else if written.certified {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(3)
+    Ok(match report.verdict {
+        Some(Verdict::Fail) => ExitCode::FAILURE,
+        Some(Verdict::Undecided) => ExitCode::from(3),
+        _ if written.certified => ExitCode::SUCCESS,
+        _ => ExitCode::from(3),
     })
 }
 

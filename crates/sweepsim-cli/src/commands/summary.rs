@@ -1,7 +1,7 @@
 //! The summary of `simulate`, `sweep` and `verify`.
 
 use crate::session::{Failure, Lines, Outputs};
-use sweepsim_formats::{Report, ReportedFinding, Verdict, WorkSummary};
+use sweepsim_formats::{Report, ReportedFinding, Statement, StatementState, Verdict, WorkSummary};
 use sweepsim_job::words::{self, clock, found, setup_name};
 use sweepsim_job::{Plan, Task, is_covered};
 
@@ -122,7 +122,20 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
     let (Some(verdict), Some(findings)) = (report.verdict, &report.findings) else {
         return;
     };
-    if verdict == Verdict::Pass {
+    let statements = report.statements.as_deref().unwrap_or_default();
+    let open = || {
+        statements
+            .iter()
+            .filter(|statement| statement.state == StatementState::Open)
+    };
+    if verdict == Verdict::Undecided {
+        let places = open().map(|statement| statement.open_count.max(1) as u64).sum();
+        let text = format!(
+            "UNDECIDED at {}: nothing was found on the dexels' lines that does harm",
+            words::counted(places, "place")
+        );
+        line("verdict", &text);
+    } else if verdict == Verdict::Pass {
         let text = "PASS on the dexels' lines only: nothing was found on them that does harm";
         line("verdict", text);
     } else if findings.is_empty() {
@@ -130,9 +143,16 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
     } else {
         line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
     }
+    for statement in statements {
+        line("proof", &proof(statement));
+    }
     if let Some(scope) = &report.scope {
         let lines = words::looked_at(scope);
-        line("looked at", &format!("lines {lines}; nothing between them"));
+        let text = match statements.is_empty() {
+            true => format!("lines {lines}; nothing between them"),
+            false => format!("lines {lines}; between them, only what is said under proof"),
+        };
+        line("looked at", &text);
         for missing in &scope.not_looked_at {
             line("not at", &format!("{} (needs {})", missing.about, missing.needs));
         }
@@ -153,6 +173,41 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
             line(name, &format!("largest found {} mm", words::measure(max)));
         }
     }
+}
+
+/// A statement in one line.
+fn proof(statement: &Statement) -> String {
+    let [least, most] = statement.enclosure;
+    let limit = words::measure(statement.limit);
+    let mut text = match statement.state {
+        StatementState::Proven => format!(
+            "everywhere, no cutter goes deeper into the target than {limit} mm: at most {} mm",
+            words::measure(most)
+        ),
+        StatementState::Refuted => format!(
+            "a cutter goes deeper into the target than {limit} mm: at least {}, at most {} mm",
+            words::measure(least),
+            words::measure(most)
+        ),
+        StatementState::Open => match &statement.reason {
+            Some(reason) => format!("OPEN whether a cutter goes deeper into the target than {limit} mm: {reason}"),
+            None => format!(
+                "OPEN whether a cutter goes deeper into the target than {limit} mm: at most {} mm, {}",
+                words::measure(most),
+                words::counted(statement.open_count as u64, "open place")
+            ),
+        },
+    };
+    let shown = statement.state != StatementState::Proven || least > 0.0;
+    if let Some(witness) = statement.witness.as_ref().filter(|_| shown) {
+        let [x, y, z] = witness.place.map(|c| format!("{c:.3}"));
+        text += &format!("; deepest known at ({x}, {y}, {z})");
+        match (&witness.file, witness.line) {
+            (Some(file), Some(line)) => text += &format!(" by {file}:{line}"),
+            _ => text += &format!(" by path {}, move {}", witness.path, witness.r#move),
+        }
+    }
+    text
 }
 
 /// A finding in one line.
@@ -183,6 +238,9 @@ fn sentence(finding: &ReportedFinding, report: &Report) -> String {
         Some("dog-leg") => ", if the rapid is a dog-leg",
         _ => "",
     };
+    if finding.between {
+        text += ", seen between the lines";
+    }
     if let Some(time) = finding.time {
         text += &format!(", from {:.1} % of the move", 100.0 * time);
     }

@@ -1,7 +1,9 @@
 //! `report.json`: the results of a run, or of a comparison, for scripts.
 
+mod statement;
 mod work;
 
+pub use statement::{OpenPlace, Statement, StatementState, StatementWitness};
 pub use work::{MoveSummary, SetupSummary, ToolSummary, WorkSummary, write_moves_csv};
 
 use indexmap::IndexMap;
@@ -40,12 +42,15 @@ pub struct Report {
     /// Where too little was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub excess: Option<DeviationSummary>,
-    /// `pass` or `fail` (`verify`).
+    /// `pass`, `fail` or `undecided` (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
     /// What was looked at, and what was not (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scope: Option<Scope>,
+    /// What was asked for everywhere, and how far it is proven (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statements: Option<Vec<Statement>>,
     /// The moves that do harm, in the program's order, then the places where too much is left (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<Vec<ReportedFinding>>,
@@ -128,6 +133,8 @@ pub enum Verdict {
     Pass,
     /// Something was found.
     Fail,
+    /// Nothing was found, but something that was asked for could not be proven.
+    Undecided,
 }
 
 /// What a verdict is about: it says nothing of anything else.
@@ -211,6 +218,9 @@ pub struct ReportedFinding {
     /// The region of the limits that it exceeds (`excess`); none for the limits of the whole part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
+    /// It was found between the lines of the dexels, by the proof of a statement.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub between: bool,
     /// What is beyond which limit (`limit`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detail: Option<String>,

@@ -104,7 +104,7 @@ impl ProgramOptions {
 }
 
 /// What [`Task::Verify`](crate::Task::Verify) looks at.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Judging {
@@ -117,6 +117,20 @@ pub struct Judging {
     pub sure: bool,
     /// Whether to write `moves.csv`: what each move removes, how deep and how wide, and how long it takes.
     pub moves: bool,
+    /// Whether to prove what can be proven between the lines of the dexels.
+    pub proof: bool,
+}
+
+impl Default for Judging {
+    fn default() -> Self {
+        Self {
+            first: false,
+            clearance: None,
+            sure: false,
+            moves: false,
+            proof: true,
+        }
+    }
 }
 
 /// How pictures are drawn.

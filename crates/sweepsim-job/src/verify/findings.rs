@@ -1,13 +1,19 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
 use super::texts::ProgramTexts;
-use super::{axes, targets, work};
-use crate::session::Session;
+use super::{axes, proof, targets, work};
+use crate::base::JobError;
+use crate::session::{Session, phase};
 use sweepsim::motion::BodyKind;
 use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
 use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
 
-pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, found: Option<&Deviations>) {
+pub(super) fn describe(
+    report: &mut Report,
+    session: Session,
+    done: &Judgement,
+    found: Option<&Deviations>,
+) -> Result<(), JobError> {
     let job = session.job;
     let mut texts = ProgramTexts::new(session);
     let mut findings: Vec<ReportedFinding> = done
@@ -16,6 +22,21 @@ pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, 
         .map(|finding| reported(finding, job, &mut texts))
         .collect();
     findings.extend(axes::findings(job, report, &mut texts));
+    let mut statements = Vec::new();
+    if session.request.judging.proof && !done.stopped {
+        let gouges = phase(report, "proof", || proof::gouges(session, &mut texts))?;
+        if let Some(proven) = gouges {
+            // What the lines have seen is known better from them.
+            let seen = |own: &ReportedFinding| {
+                let same = |other: &ReportedFinding| (other.path, other.r#move) == (own.path, own.r#move);
+                findings.iter().any(|other| other.kind == "gouge" && same(other))
+            };
+            let new: Vec<_> = proven.findings.into_iter().filter(|own| !seen(own)).collect();
+            findings.extend(new);
+            statements.push(proven.statement);
+        }
+        report.statements = Some(statements.clone());
+    }
     // A stable sort: of one move, what happens first comes first.
     let when = |finding: &ReportedFinding| (finding.path, finding.r#move);
     findings.sort_by(|a, b| {
@@ -71,12 +92,14 @@ pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, 
         ));
     }
     let missed = found.is_some_and(|found| !found.regions.is_empty());
-    report.verdict = Some(if findings.is_empty() && !missed {
+    let on_lines = if findings.is_empty() && !missed {
         Verdict::Pass
     } else {
         Verdict::Fail
-    });
+    };
+    report.verdict = Some(proof::verdict(on_lines, &statements));
     report.findings = Some(findings);
+    Ok(())
 }
 
 fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedFinding {

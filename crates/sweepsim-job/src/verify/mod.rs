@@ -5,6 +5,7 @@ mod directions;
 mod findings;
 mod fixtures;
 mod program;
+mod proof;
 mod scope;
 pub(crate) mod targets;
 mod texts;
@@ -187,7 +188,7 @@ impl Before {
             }
             _ => None,
         };
-        findings::describe(report, session, &done, found.as_ref());
+        findings::describe(report, session, &done, found.as_ref())?;
         report.scope = Some(scope::scope(session, sets));
         let along_z = looks.into_iter().next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;

@@ -3,6 +3,6 @@
 mod run;
 mod stretch;
 
-pub(crate) use run::{Bounds, Run};
+pub(crate) use run::Run;
 pub use stretch::Placement;
 pub(crate) use stretch::Stretch;

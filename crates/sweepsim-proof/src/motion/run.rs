@@ -19,13 +19,6 @@ impl Bounds {
         }
     }
 
-    /// The largest `⟨direction, x⟩`.
-    pub fn support(&self, direction: &Vector3<f64>) -> f64 {
-        (0..3)
-            .map(|k| (direction[k] * self.low[k]).max(direction[k] * self.high[k]))
-            .sum()
-    }
-
     pub fn size(&self) -> f64 {
         (self.high - self.low).norm()
     }
@@ -47,6 +40,8 @@ pub(crate) struct Node {
     pub tips: Bounds,
     /// The axis, if it is the same all the way.
     pub axis: Option<Vector3<f64>>,
+    /// By how much a point may go beyond the hull of where it is at the ends of the stretches.
+    pub bend: f64,
     /// The two halves, if there is more than one stretch.
     pub halves: Option<[usize; 2]>,
 }
@@ -55,6 +50,8 @@ pub(crate) struct Node {
 pub(crate) struct Run<'a> {
     pub solid: &'a Convex,
     pub stretches: &'a [Stretch],
+    /// Where each stretch begins and ends.
+    pub ends: Vec<Placement>,
     /// The root is the last one.
     pub nodes: Vec<Node>,
     pub reach: f64,
@@ -65,6 +62,7 @@ impl<'a> Run<'a> {
         let mut run = Self {
             solid,
             stretches,
+            ends: stretches.iter().flat_map(|stretch| stretch.ends).collect(),
             nodes: Vec::with_capacity(2 * stretches.len()),
             reach: solid.reach(),
         };
@@ -77,18 +75,19 @@ impl<'a> Run<'a> {
     fn build(&mut self, first: usize, last: usize) -> usize {
         let node = if last == first + 1 {
             let stretch = &self.stretches[first];
-            let ends = [stretch.at(0.0), stretch.at(1.0)];
             let tips = Bounds {
                 low: stretch.low,
                 high: stretch.high,
             };
-            let axis = stretch.keeps_axis().then_some(ends[0].axis);
+            let axis = stretch.keeps_axis().then_some(stretch.ends[0].axis);
+            let bend = stretch.bend(self.reach, 1.0);
             Node {
                 first,
                 last,
-                swept: self.swept(&ends, tips, axis, stretch.bend(self.reach, 1.0)),
+                swept: self.swept(&stretch.ends, axis, bend),
                 tips,
                 axis,
+                bend,
                 halves: None,
             }
         } else {
@@ -101,6 +100,7 @@ impl<'a> Run<'a> {
                 swept: a.swept.join(&b.swept),
                 tips: a.tips.join(&b.tips),
                 axis: a.axis.filter(|axis| b.axis == Some(*axis)),
+                bend: a.bend.max(b.bend),
                 halves: Some(halves),
             }
         };
@@ -108,12 +108,8 @@ impl<'a> Run<'a> {
         self.nodes.len() - 1
     }
 
-    /// What is swept between two placements.
-    pub fn swept(&self, ends: &[Placement; 2], tips: Bounds, axis: Option<Vector3<f64>>, bend: f64) -> Bounds {
-        let reaches = |direction: Vector3<f64>| match &axis {
-            Some(axis) => tips.support(&direction) + self.solid.support(&direction, axis),
-            None => self.reaches(ends, &direction) + bend,
-        };
+    /// What is swept between placements, if no point goes farther than `bend` beyond the hull of where it is at these.
+    pub fn swept(&self, ends: &[Placement], axis: Option<Vector3<f64>>, bend: f64) -> Bounds {
         let mut bounds = Bounds {
             low: Vector3::zeros(),
             high: Vector3::zeros(),
@@ -121,25 +117,32 @@ impl<'a> Run<'a> {
         for k in 0..3 {
             let mut direction = Vector3::zeros();
             direction[k] = 1.0;
-            bounds.high[k] = reaches(direction);
-            bounds.low[k] = -reaches(-direction);
+            bounds.high[k] = self.reaches(ends, axis, &direction).0 + bend;
+            bounds.low[k] = -self.reaches(ends, axis, &-direction).0 - bend;
         }
         bounds
     }
 
-    /// How far the solid reaches in a direction at two placements.
-    pub fn reaches(&self, ends: &[Placement; 2], direction: &Vector3<f64>) -> f64 {
-        let one = |end: &Placement| direction.dot(&end.tip) + self.solid.support(direction, &end.axis);
-        one(&ends[0]).max(one(&ends[1]))
+    /// How far the solid reaches in a direction at some placements, and at which of them. `axis`: of all of them.
+    pub fn reaches(&self, ends: &[Placement], axis: Option<Vector3<f64>>, direction: &Vector3<f64>) -> (f64, usize) {
+        let mut best = (f64::NEG_INFINITY, 0);
+        for (number, end) in ends.iter().enumerate() {
+            let own = if axis.is_some() {
+                0.0
+            } else {
+                self.solid.support(direction, &end.axis)
+            };
+            let value = direction.dot(&end.tip) + own;
+            if value > best.0 {
+                best = (value, number);
+            }
+        }
+        best.0 += axis.map_or(0.0, |axis| self.solid.support(direction, &axis));
+        best
     }
 
-    /// The point that reaches farthest, and at which of both ends.
-    pub fn farthest(&self, ends: &[Placement; 2], direction: &Vector3<f64>) -> (Vector3<f64>, usize) {
-        let [a, b] = ends.map(|end| end.tip + self.solid.farthest(direction, &end.axis));
-        if direction.dot(&a) >= direction.dot(&b) {
-            (a, 0)
-        } else {
-            (b, 1)
-        }
+    /// The point of the solid at a placement that reaches farthest.
+    pub fn farthest(&self, end: &Placement, direction: &Vector3<f64>) -> Vector3<f64> {
+        end.tip + self.solid.farthest(direction, &end.axis)
     }
 }

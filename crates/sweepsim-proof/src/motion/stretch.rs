@@ -12,6 +12,9 @@ pub struct Placement {
     pub axis: Vector3<f64>,
 }
 
+/// A unit vector that moves no faster keeps still, but for rounding.
+const STILL: f64 = 1e-13;
+
 /// How fast something moves, and how fast that changes, for `t` in `[0, 1]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rates {
@@ -26,6 +29,8 @@ pub(crate) struct Stretch {
     /// The move, and the times in it at which the stretch begins and ends.
     pub number: usize,
     pub times: [f64; 2],
+    /// Where it begins and ends.
+    pub ends: [Placement; 2],
     /// The way of the tip stays in the box of these.
     pub low: Vector3<f64>,
     pub high: Vector3<f64>,
@@ -41,8 +46,10 @@ impl Stretch {
         let high = control().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(&p));
         let axes: Vec<_> = segment.turns().iter().map(|turn| turn.column(2).into_owned()).collect();
         let (tip, axis) = (rates(&points, &weights), rates(&axes, segment.weights()));
+        let ends = [0.0, 1.0].map(|t| placement(&segment, t));
         Self {
             segment,
+            ends,
             number,
             times,
             low,
@@ -54,15 +61,16 @@ impl Stretch {
 
     /// Whether the axis stays the same.
     pub fn keeps_axis(&self) -> bool {
-        self.axis.speed == 0.0
+        self.axis.speed <= STILL
     }
 
     pub fn at(&self, t: f64) -> Placement {
-        let (turn, tip) = self.segment.at(t);
-        Placement {
-            tip: tip.into(),
-            axis: turn.column(2).into_owned(),
+        let [from, to] = &self.ends;
+        if self.keeps_axis() && self.tip.bend == 0.0 {
+            let (tip, axis) = (from.tip + (to.tip - from.tip) * t, from.axis);
+            return Placement { tip, axis };
         }
+        placement(&self.segment, t)
     }
 
     /// The time in the move.
@@ -84,6 +92,14 @@ impl Stretch {
     pub fn bend(&self, reach: f64, duration: f64) -> f64 {
         let turning = self.axis.bend + self.axis.speed * self.axis.speed;
         (self.tip.bend + turning * reach) * duration * duration / 8.0
+    }
+}
+
+fn placement(segment: &Segment, t: f64) -> Placement {
+    let (turn, tip) = segment.at(t);
+    Placement {
+        tip: tip.into(),
+        axis: turn.column(2).into_owned(),
     }
 }
 

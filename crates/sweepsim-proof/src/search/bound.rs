@@ -11,7 +11,6 @@
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
 
 use super::reach::During;
-use crate::motion::Run;
 use crate::target::{Cell, Triangle, Way, is_outside};
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
@@ -33,8 +32,7 @@ const STEPS: usize = 8;
 
 /// A solid near a cell.
 pub(super) struct Above<'a> {
-    pub run: &'a Run<'a>,
-    pub during: During,
+    pub during: During<'a>,
     pub cell: &'a Cell,
     pub triangles: &'a [Triangle],
 }
@@ -58,7 +56,13 @@ impl Above<'_> {
         if best.value <= enough {
             return best;
         }
-        for (i, a) in ways.iter().enumerate().take(TOGETHER) {
+        // Where all faces look about the same way, several planes are no better than one.
+        let several = if self.cell.is_smooth(self.triangles) {
+            0
+        } else {
+            TOGETHER
+        };
+        for (i, a) in ways.iter().enumerate().take(several) {
             for (j, b) in ways.iter().enumerate().take(i) {
                 if a.normal.dot(&b.normal) < -0.5 {
                     self.slab(a, b, &mut best);
@@ -84,7 +88,7 @@ impl Above<'_> {
     /// How far the solid in the cell reaches against a normal.
     fn below(&self, normal: &Vector3<f64>) -> f64 {
         let down = -normal;
-        self.during.reach(self.run, &down).min(self.cell.support(&down))
+        self.during.reach(&down).min(self.cell.support(&down))
     }
 
     fn slab(&self, a: &Way, b: &Way, best: &mut Depth) {
@@ -149,9 +153,9 @@ impl Above<'_> {
         let mut normal = best.normal;
         let value_of = |normal: &Vector3<f64>| self.cell.top(normal).0 + self.below(normal);
         let mut value = value_of(&normal);
-        let mut step = 1.0 / self.run.solid.radius().max(1e-3);
+        let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..STEPS {
-            let apart = self.cell.top(&normal).1 - self.during.farthest(self.run, &-normal);
+            let apart = self.cell.top(&normal).1 - self.during.farthest(&-normal).1;
             let across = apart - normal * normal.dot(&apart);
             let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
                 break;
@@ -174,19 +178,19 @@ impl Above<'_> {
 
     /// Whether no point of the solid is in the cell.
     pub fn misses(&self) -> bool {
-        let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(self.run, &-normal));
-        let away = self.during.core(self.run, &self.cell.centre) - self.cell.centre;
+        let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(&-normal));
+        let away = self.during.core(&self.cell.centre) - self.cell.centre;
         let Some(mut normal) = away.try_normalize(1e-12) else {
             return false;
         };
         let mut value = gap(&normal);
-        let mut step = 1.0 / self.run.solid.radius().max(1e-3);
+        let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..2 * STEPS {
             if value > 0.0 {
                 return true;
             }
             let corner = self.cell.centre + normal.map(|c| self.cell.half.copysign(c));
-            let apart = corner - self.during.farthest(self.run, &-normal);
+            let apart = corner - self.during.farthest(&-normal).1;
             let across = apart - normal * normal.dot(&apart);
             let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
                 return false;

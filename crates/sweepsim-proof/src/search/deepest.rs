@@ -2,7 +2,7 @@
 
 use super::bound::{Above, Depth};
 use super::reach::During;
-use crate::motion::{Bounds, Placement, Run, Stretch};
+use crate::motion::{Run, Stretch};
 use crate::statement::{OpenBox, Witness};
 use crate::target::{Cell, MOST_PIECES, Near, Target};
 use nalgebra::Vector3;
@@ -23,6 +23,14 @@ pub(super) struct Wanted {
     pub known: f64,
 }
 
+/// Where cutters go deep, the enclosure may be as wide as this part of the depth.
+pub(super) const SHARE: f64 = 1.0 / 64.0;
+
+/// Runs of more stretches along which the axis turns are divided before they are looked at.
+const MOST_TURNING: usize = 4;
+/// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
+const FINE: f64 = 16.0;
+
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Found {
@@ -39,11 +47,7 @@ pub(super) struct Found {
 #[derive(Clone, Copy)]
 enum When {
     Node(usize),
-    Part {
-        stretch: usize,
-        times: [f64; 2],
-        ends: [Placement; 2],
-    },
+    Part { stretch: usize, times: [f64; 2] },
 }
 
 /// A cell and a time that are to be looked at.
@@ -149,156 +153,155 @@ impl<'a> Search<'a> {
 
     /// A pair whose bound is no more than this is done.
     fn enough(&self) -> f64 {
-        self.wanted.width.max(self.known() + self.wanted.width) - self.wanted.allowance
+        let known = self.known();
+        known + self.wanted.width.max(known * SHARE) - self.wanted.allowance
     }
 
     fn visit(&mut self, pair: &Pair<'a>) {
         let Pair { cell, when, .. } = *pair;
-        let (swept, during) = self.during(cell, when);
-        if matches!(cell.near, Near::Outside) || swept.misses(&cell.centre, cell.half) {
+        if matches!(cell.near, Near::Outside) {
             return;
         }
+        let own;
+        let (during, few) = match when {
+            When::Node(number) => {
+                let node = &self.run.nodes[number];
+                if node.swept.misses(&cell.centre, cell.half) {
+                    return;
+                }
+                let during = During {
+                    run: self.run,
+                    ends: &self.run.ends[2 * node.first..2 * node.last],
+                    axis: node.axis,
+                    bend: node.bend,
+                };
+                let wide = node.tips.size() > 8.0 * cell.half;
+                let costly = node.axis.is_none() && node.last - node.first > MOST_TURNING;
+                (during, node.halves.is_none() || !(wide || costly))
+            }
+            When::Part { stretch, times } => {
+                let stretch = &self.run.stretches[stretch];
+                own = times.map(|t| stretch.at(t));
+                let duration = times[1] - times[0];
+                // Points in the cell are no farther from the tip than this.
+                let middle = 0.5 * (own[0].tip + own[1].tip);
+                let far = (middle - cell.centre).norm() + 3_f64.sqrt() * cell.half;
+                let reach = self.run.reach.min(far + stretch.travel(0.0, duration));
+                let during = During {
+                    run: self.run,
+                    ends: &own,
+                    axis: stretch.keeps_axis().then_some(own[0].axis),
+                    bend: stretch.bend(reach, duration),
+                };
+                (during, true)
+            }
+        };
+        let pieces = cell.pieces().len();
         let mut depth = Depth {
             value: pair.depth,
             normal: Vector3::z(),
             place: None,
         };
-        let mut bend = 0.0;
-        if let Some(during) = during {
+        if few && pieces <= MOST_PIECES {
             let above = Above {
-                run: self.run,
                 during,
                 cell,
                 triangles: &self.target.triangles,
             };
-            let pieces = cell.pieces().len();
             if pieces == 0 {
                 depth.place = Some(cell.centre);
-            } else if pieces <= MOST_PIECES {
+            } else {
                 let own = above.depth(self.enough());
                 depth = Depth {
                     value: own.value.min(depth.value),
                     ..own
                 };
             }
-            if depth.value > self.enough() {
+            if depth.value > self.enough() && (pieces == 0 || cell.half < FINE * self.wanted.width) {
                 depth.value = depth.value.min(cell.deepest(&self.target.distance));
             }
-            if depth.value > self.enough() && pieces <= MOST_PIECES {
+            if depth.value > self.enough() {
                 if above.misses() {
                     return;
                 }
-                self.sample(when, &depth);
-            }
-            if let During::Between { bend: own, .. } = during {
-                bend = own;
+                self.sample(when, &during, &depth);
             }
         }
         if depth.value <= self.enough() {
             self.settle(depth.value);
-        } else if cell.half < 0.05 * self.wanted.width || !self.divide(cell, when, (depth.value, bend)) {
+        } else if cell.half < 0.05 * self.wanted.width || !self.divide(cell, when, (depth.value, during.bend)) {
             self.leave(pair, depth.value);
-        }
-    }
-
-    /// What is swept, and the solid during that time if it can be bounded in every direction.
-    fn during(&self, cell: &Cell, when: When) -> (Bounds, Option<During>) {
-        match when {
-            When::Node(number) => {
-                let node = &self.run.nodes[number];
-                let near = node.tips.size() <= 8.0 * cell.half || node.halves.is_none();
-                let during = match node.axis {
-                    Some(axis) if near => Some(During::Anywhere { tips: node.tips, axis }),
-                    _ => None,
-                };
-                (node.swept, during)
-            }
-            When::Part { stretch, times, ends } => {
-                let stretch = &self.run.stretches[stretch];
-                let duration = times[1] - times[0];
-                let bend = stretch.bend(self.run.reach, duration);
-                let tips = Bounds {
-                    low: ends[0].tip.inf(&ends[1].tip),
-                    high: ends[0].tip.sup(&ends[1].tip),
-                };
-                let swept = self.run.swept(&ends, tips, None, bend);
-                // Points in the cell are no farther from the tip than this.
-                let middle = 0.5 * (ends[0].tip + ends[1].tip);
-                let far = (middle - cell.centre).norm() + 3_f64.sqrt() * cell.half;
-                let reach = self.run.reach.min(far + stretch.travel(0.0, duration));
-                let bend = stretch.bend(reach, duration);
-                (swept, Some(During::Between { ends, bend }))
-            }
         }
     }
 
     /// Divides a pair: the time if the solid moves farther in it than the cell is wide, else the cell.
     fn divide(&mut self, cell: &'a Cell, when: When, (depth, bend): (f64, f64)) -> bool {
-        match when {
+        let bends = bend > 0.25 * self.wanted.width;
+        let (stretch, times) = match when {
             When::Node(number) => {
-                let node = &self.run.nodes[number];
+                let node = self.run.nodes[number];
                 match node.halves {
-                    Some(halves) if node.axis.is_none() || node.tips.size() > cell.half => {
-                        for half in halves {
-                            self.push(depth, cell, When::Node(half));
+                    Some(halves) => {
+                        if bends || node.tips.size() > 2.0 * cell.half {
+                            halves.iter().for_each(|half| self.push(depth, cell, When::Node(*half)));
+                            return true;
                         }
-                        return true;
+                        return self.divide_cell(cell, when, depth);
                     }
-                    None => {
-                        self.push(depth, cell, self.part(node.first, [0.0, 1.0]));
-                        return true;
-                    }
-                    Some(_) => {}
+                    None => (node.first, [0.0, 1.0]),
                 }
             }
-            When::Part { stretch, times, .. } => {
-                let duration = times[1] - times[0];
-                let moves = self.run.stretches[stretch].travel(self.run.reach, duration) > 2.0 * cell.half;
-                let bends = bend > 0.25 * self.wanted.width;
-                if (moves || bends) && duration > 1e-9 {
-                    let middle = 0.5 * (times[0] + times[1]);
-                    for half in [[times[0], middle], [middle, times[1]]] {
-                        self.push(depth, cell, self.part(stretch, half));
-                    }
-                    return true;
-                }
-            }
+            When::Part { stretch, times } => (stretch, times),
+        };
+        let duration = times[1] - times[0];
+        let moves = self.run.stretches[stretch].travel(self.run.reach, duration) > 2.0 * cell.half;
+        if !(moves || bends) || duration < 1e-9 {
+            return self.divide_cell(cell, when, depth);
         }
+        let middle = 0.5 * (times[0] + times[1]);
+        for times in [[times[0], middle], [middle, times[1]]] {
+            self.push(depth, cell, When::Part { stretch, times });
+        }
+        true
+    }
+
+    fn divide_cell(&mut self, cell: &'a Cell, when: When, depth: f64) -> bool {
         let target = self.target;
         let Some(children) = cell.children(&target.distance, &target.cells_left) else {
             return false;
         };
         for child in children {
-            self.push(depth, child, when);
+            // Most of them are not reached.
+            let misses =
+                matches!(when, When::Node(number) if self.run.nodes[number].swept.misses(&child.centre, child.half));
+            if !misses && !matches!(child.near, Near::Outside) {
+                self.push(depth, child, when);
+            }
         }
         true
     }
 
-    fn part(&self, stretch: usize, times: [f64; 2]) -> When {
-        When::Part {
-            stretch,
-            times,
-            ends: times.map(|t| self.run.stretches[stretch].at(t)),
-        }
-    }
-
     /// Looks at points of the solid that may be the deepest.
-    fn sample(&mut self, when: When, depth: &Depth) {
-        let When::Part { stretch, times, ends } = when else {
-            return;
-        };
+    fn sample(&mut self, when: When, during: &During, depth: &Depth) {
         if !self.run.solid.is_exact() {
             return;
         }
-        for (end, t) in ends.iter().zip(times) {
-            let lowest = end.tip + self.run.solid.farthest(&-depth.normal, &end.axis);
-            self.look_at(stretch, t, &lowest);
-            if let Some(place) = depth.place {
-                let off = place - end.tip;
-                let along = off.dot(&end.axis);
-                if self.run.solid.contains([(off - end.axis * along).norm(), along]) {
-                    self.look_at(stretch, t, &place);
-                }
+        let time = |number: usize| match when {
+            When::Node(node) => (self.run.nodes[node].first + number / 2, (number % 2) as f64),
+            When::Part { stretch, times } => (stretch, times[number]),
+        };
+        let (number, lowest) = during.farthest(&-depth.normal);
+        let (stretch, t) = time(number);
+        self.look_at(stretch, t, &lowest);
+        let Some(place) = depth.place else { return };
+        let (first, last) = (0, during.ends.len() - 1);
+        for number in [first, last] {
+            let end = &during.ends[number];
+            let off = place - end.tip;
+            let along = off.dot(&end.axis);
+            if self.run.solid.contains([(off - end.axis * along).norm(), along]) {
+                let (stretch, t) = time(number);
+                self.look_at(stretch, t, &place);
             }
         }
     }

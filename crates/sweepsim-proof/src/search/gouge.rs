@@ -1,6 +1,6 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
-use super::deepest::{Found, Search, Wanted};
+use super::deepest::{Found, SHARE, Search, Wanted};
 use crate::motion::{Run, Stretch};
 use crate::statement::{OpenBox, Witness};
 use crate::target::Target;
@@ -8,7 +8,7 @@ use crate::tool::Convex;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use sweepsim_motion::Path;
+use sweepsim_motion::{OtherCourses, Path, Segment};
 use sweepsim_solve::Monitor;
 
 /// A cutter on its path.
@@ -18,6 +18,8 @@ pub struct Cutter<'a> {
     pub solids: &'a [Convex],
     /// Its path.
     pub path: &'a Path,
+    /// Other courses that its moves may take.
+    pub others: Option<&'a OtherCourses>,
 }
 
 /// What is wanted.
@@ -51,7 +53,7 @@ const TOGETHER: usize = 64;
 /// At first, every part of the work looks at so many pairs.
 const FIRST_LOOK: usize = 512;
 /// Every part of the work may look at so many pairs.
-const LEAST_PAIRS: usize = 20_000;
+const LEAST_PAIRS: usize = 10_000;
 /// Coordinates of this size are exact to 1: some thousand roundings, more than any bound here has.
 const ROUNDING: f64 = 1e-12;
 
@@ -77,7 +79,8 @@ pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &d
         look_everywhere(target, cutters, (&parts, limits), (each, known), monitor)?.with_known(first)
     };
     // What is left open elsewhere, but no deeper than what is known, is settled.
-    let settled = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth) + limits.width;
+    let known = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth);
+    let settled = known + limits.width.max(known * SHARE);
     all.open.retain(|(_, open)| open.depth > settled);
     all.bound = all
         .bound
@@ -150,20 +153,25 @@ impl Enclosed {
 /// Some moves of a cutter.
 fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Found {
     let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-    let deviation = 0.01 * limits.width;
-    let (path, first) = cutter.path.unpacked(moves.clone());
+    let deviation = 1e-3 * limits.width;
     let mut stretches = Vec::with_capacity(moves.len());
-    let mut size = target.size;
-    for number in moves {
+    let (path, first) = cutter.path.unpacked(moves.clone());
+    for number in moves.clone() {
         let segments = path.segments_of_symmetric(number - first, reach, deviation);
-        let count = segments.len() as f64;
-        for (k, segment) in segments.into_iter().enumerate() {
-            let times = [k as f64 / count, (k + 1) as f64 / count];
-            let stretch = Stretch::new(segment, number, times);
-            size = size.max(stretch.low.amax()).max(stretch.high.amax());
-            stretches.push(stretch);
+        add(&mut stretches, segments, number, [0.0, 1.0]);
+    }
+    for other in cutter.others.iter().flat_map(|others| others.of(moves.clone())) {
+        let mut from = 0.0;
+        for (k, to) in other.times.iter().enumerate() {
+            let segments = other.path.segments_of_symmetric(k, reach, deviation);
+            add(&mut stretches, segments, other.number, [from, *to]);
+            from = *to;
         }
     }
+    let size = stretches
+        .iter()
+        .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
+    let size = size.fold(target.size, f64::max);
     let wanted = Wanted {
         limit: limits.depth,
         width: limits.width,
@@ -173,6 +181,9 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
     };
     let mut all = Found::default();
     for solid in cutter.solids {
+        // What only bounds the tool has no witness: more than a first look would not end.
+        let pairs = if solid.is_exact() { pairs } else { pairs.min(FIRST_LOOK) };
+        let wanted = Wanted { pairs, ..wanted };
         let run = Run::new(solid, &stretches);
         let found = Search::new(target, &run, wanted).run();
         all.bound = all.bound.max(found.bound);
@@ -191,4 +202,13 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
         }
     }
     all
+}
+
+/// The segments of a move, of equal duration between two times of it.
+fn add(stretches: &mut Vec<Stretch>, segments: Vec<Segment>, number: usize, [from, to]: [f64; 2]) {
+    let count = segments.len() as f64;
+    let time = |k: usize| from + (to - from) * k as f64 / count;
+    for (k, segment) in segments.into_iter().enumerate() {
+        stretches.push(Stretch::new(segment, number, [time(k), time(k + 1)]));
+    }
 }

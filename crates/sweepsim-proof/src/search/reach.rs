@@ -1,44 +1,39 @@
 //! How far a moving solid reaches in a direction during a time.
 
-use crate::motion::{Bounds, Placement, Run};
+use crate::motion::{Placement, Run};
 use nalgebra::Vector3;
 
-/// A solid during a time: a part of a stretch, or a run of stretches with one axis.
+/// A solid at some placements and on the way between consecutive ones: no point goes farther than `bend` beyond the
+/// hull of where it is at these.
 #[derive(Clone, Copy)]
-pub(super) enum During {
-    /// The tip is somewhere in a box.
-    Anywhere { tips: Bounds, axis: Vector3<f64> },
-    /// From one placement to another, and beyond the line between them by no more than this.
-    Between { ends: [Placement; 2], bend: f64 },
+pub(super) struct During<'a> {
+    pub run: &'a Run<'a>,
+    pub ends: &'a [Placement],
+    /// The axis, if it is the same at all of them.
+    pub axis: Option<Vector3<f64>>,
+    pub bend: f64,
 }
 
-impl During {
+impl During<'_> {
     /// A bound of the largest `⟨direction, x⟩` over the solid at all these times.
-    pub fn reach(&self, run: &Run, direction: &Vector3<f64>) -> f64 {
-        match self {
-            Self::Anywhere { tips, axis } => tips.support(direction) + run.solid.support(direction, axis),
-            Self::Between { ends, bend } => run.reaches(ends, direction) + bend,
-        }
+    pub fn reach(&self, direction: &Vector3<f64>) -> f64 {
+        self.run.reaches(self.ends, self.axis, direction).0 + self.bend
     }
 
-    /// A point that reaches about as far.
-    pub fn farthest(&self, run: &Run, direction: &Vector3<f64>) -> Vector3<f64> {
-        match self {
-            Self::Anywhere { tips, axis } => {
-                let tip = Vector3::from_fn(|k, _| if direction[k] > 0.0 { tips.high[k] } else { tips.low[k] });
-                tip + run.solid.farthest(direction, axis)
-            }
-            Self::Between { ends, .. } => run.farthest(ends, direction).0,
-        }
+    /// The number of the placement at which the solid reaches farthest, and that point.
+    pub fn farthest(&self, direction: &Vector3<f64>) -> (usize, Vector3<f64>) {
+        let number = self.run.reaches(self.ends, self.axis, direction).1;
+        (number, self.run.farthest(&self.ends[number], direction))
     }
 
-    /// A point on the axis of the solid, about as near to another point as there is one.
-    pub fn core(&self, run: &Run, point: &Vector3<f64>) -> Vector3<f64> {
-        let (tip, axis) = match self {
-            Self::Anywhere { tips, axis } => (point.sup(&tips.low).inf(&tips.high), *axis),
-            Self::Between { ends, .. } => (0.5 * (ends[0].tip + ends[1].tip), ends[0].axis),
-        };
-        let [low, high] = run.solid.heights();
-        tip + axis * (point - tip).dot(&axis).clamp(low, high)
+    /// A point on the axis of the solid that is about as near to another point as one is.
+    pub fn core(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        let [low, high] = self.run.solid.heights();
+        let on_axis = |end: &Placement| end.tip + end.axis * (point - end.tip).dot(&end.axis).clamp(low, high);
+        let (first, last) = (&self.ends[0], &self.ends[self.ends.len() - 1]);
+        let [a, b] = [on_axis(first), on_axis(last)];
+        let way = b - a;
+        let part = (point - a).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE);
+        a + way * part.clamp(0.0, 1.0)
     }
 }

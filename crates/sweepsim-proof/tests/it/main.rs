@@ -1,3 +1,4 @@
 //! Proofs against what is known.
 
+mod scenes;
 mod walls;

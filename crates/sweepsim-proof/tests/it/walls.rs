@@ -83,6 +83,7 @@ fn judged(target: &Target) -> Enclosed {
     let cutter = Cutter {
         solids: &solids,
         path: &path,
+        others: None,
     };
     deepest(target, &[cutter], &LIMITS, &()).expect("not cancelled")
 }

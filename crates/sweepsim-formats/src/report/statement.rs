@@ -1,0 +1,95 @@
+//! Statements that hold everywhere, or do not, or are open.
+
+use serde::{Deserialize, Serialize};
+
+/// Something that was asked for at every time of the program and in every place. Lengths are in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Statement {
+    /// `gouge`: no cutter goes deeper below the target than the limit.
+    pub about: String,
+    /// The limit.
+    pub limit: f64,
+    /// The largest depth lies between these: the first is attained at the witness, the second is proven.
+    pub enclosure: [f64; 2],
+    /// Whether the statement holds.
+    pub state: StatementState,
+    /// Where the lower end of the enclosure is attained; none if nothing goes below the surface.
+    pub witness: Option<StatementWitness>,
+    /// Where it is not known whether the statement holds; at most 100 of them.
+    pub open: Vec<OpenPlace>,
+    /// How many these are.
+    pub open_count: usize,
+    /// Why it is open, if not for its places.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl Statement {
+    /// An open statement about something, with its limit.
+    #[must_use]
+    pub fn new(about: impl Into<String>, limit: f64) -> Self {
+        Self {
+            about: about.into(),
+            limit,
+            enclosure: [0.0, f64::MAX],
+            state: StatementState::Open,
+            witness: None,
+            open: Vec::new(),
+            open_count: 0,
+            reason: None,
+        }
+    }
+}
+
+/// Whether a statement holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StatementState {
+    /// It holds everywhere.
+    Proven,
+    /// It does not: the witness shows it.
+    Refuted,
+    /// It is not known.
+    Open,
+}
+
+/// Where the lower end of an enclosure is attained.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct StatementWitness {
+    /// The path of the job, from 0.
+    pub path: usize,
+    /// The move of the path, from 0.
+    pub r#move: usize,
+    /// The program's file.
+    pub file: Option<String>,
+    /// The line of the file, from 1.
+    pub line: Option<usize>,
+    /// The text of the line.
+    pub text: Option<String>,
+    /// When, as a fraction of the move.
+    pub time: f64,
+    /// Where.
+    pub place: [f64; 3],
+    /// The body, if it is not the cutter.
+    pub body: Option<String>,
+}
+
+/// Where it is not known whether a statement holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct OpenPlace {
+    /// The path of the job, from 0.
+    pub path: usize,
+    /// The first of the moves, from 0.
+    pub r#move: usize,
+    /// The program's file.
+    pub file: Option<String>,
+    /// The line of the file, from 1.
+    pub line: Option<usize>,
+    /// From when to when, as fractions of the first and of the last move.
+    pub time: [f64; 2],
+    /// The box: its lower and its upper corner.
+    pub r#box: [f64; 6],
+}

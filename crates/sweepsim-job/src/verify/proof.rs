@@ -1,0 +1,176 @@
+//! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
+
+use super::targets;
+use super::texts::ProgramTexts;
+use super::work;
+use crate::base::JobError;
+use crate::session::Session;
+use std::collections::BTreeMap;
+use sweepsim_formats::{Job, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict};
+use sweepsim_proof::{Convex, Cutter, Enclosed, Limits, OpenBox, Target, Witness, cover, deepest};
+
+/// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
+const WIDTH: f64 = 0.1;
+/// Concave outlines are replaced by chords within this part of the limit.
+const CHORDS: f64 = 0.01;
+/// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
+const PAIRS: usize = 4_000_000;
+const PAIRS_OF_MOVE: usize = 400;
+/// As many open places are listed.
+const LISTED: usize = 100;
+
+/// A statement with the moves that were seen to break it.
+pub(super) struct Proven {
+    pub statement: Statement,
+    pub findings: Vec<ReportedFinding>,
+}
+
+/// What is proven of gouges; nothing without a target.
+pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Option<Proven>, JobError> {
+    let job = session.job;
+    let Some(target) = &job.target else {
+        return Ok(None);
+    };
+    let [least, most] = limits(job);
+    let mut statement = Statement::new("gouge", least);
+    let solid = match Target::new(&target.mesh) {
+        Ok(solid) if target.mesh.volume() > 0.0 => solid,
+        Ok(_) => {
+            statement.reason = Some("the target is inside out".to_owned());
+            return Ok(Some(Proven::open(statement)));
+        }
+        Err(error) => {
+            statement.reason = Some(format!("the target is no solid: {error}"));
+            return Ok(Some(Proven::open(statement)));
+        }
+    };
+    session.phase("proof");
+    let cutters: BTreeMap<u32, Vec<Convex>> = job
+        .tools
+        .iter()
+        .map(|(number, tool)| (*number, cover(tool, CHORDS * least)))
+        .collect();
+    let cutters: Vec<Cutter> = job
+        .paths
+        .iter()
+        .map(|path| Cutter {
+            solids: &cutters[&path.tool],
+            path: &path.path,
+            others: Some(&path.other_courses),
+        })
+        .collect();
+    let wanted = Limits {
+        depth: least,
+        width: WIDTH * least,
+        pairs: PAIRS + PAIRS_OF_MOVE * job.moves(),
+    };
+    let found = deepest(&solid, &cutters, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
+    if std::env::var_os("SWEEPSIM_PAIRS").is_some() {
+        eprintln!("pairs {}", found.pairs);
+    }
+    let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
+    statement.enclosure = [known, found.bound];
+    statement.state = if found.bound <= least {
+        StatementState::Proven
+    } else if known > most {
+        StatementState::Refuted
+    } else {
+        StatementState::Open
+    };
+    if statement.state == StatementState::Open && known > least {
+        statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
+    }
+    let witness = found.deepest.as_ref();
+    statement.witness = witness.map(|(path, witness)| described(job, texts, *path, witness));
+    statement.open_count = found.open.len();
+    statement.open = found
+        .open
+        .iter()
+        .take(LISTED)
+        .map(|(path, open)| place(job, texts, *path, open))
+        .collect();
+    let findings = if statement.state == StatementState::Refuted {
+        beyond(job, texts, &found, most)
+    } else {
+        Vec::new()
+    };
+    Ok(Some(Proven { statement, findings }))
+}
+
+impl Proven {
+    fn open(statement: Statement) -> Self {
+        Self {
+            statement,
+            findings: Vec::new(),
+        }
+    }
+}
+
+/// The least and the largest depth that is allowed somewhere.
+fn limits(job: &Job) -> [f64; 2] {
+    let own = job.limits.as_ref();
+    let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
+    let regions = own
+        .into_iter()
+        .flat_map(|limits| &limits.regions)
+        .map(|region| region.gouge);
+    let floor = 2.0 * job.tolerance;
+    regions.fold([general.max(floor); 2], |[least, most], limit| {
+        [least.min(limit.max(floor)), most.max(limit.max(floor))]
+    })
+}
+
+fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness) -> StatementWitness {
+    let mut described = StatementWitness::default();
+    (described.path, described.r#move) = (path, witness.number);
+    (described.time, described.place) = (witness.time, witness.place);
+    if let Some((file, line)) = work::place(&job.paths[path], witness.number, &texts.folder) {
+        described.text = texts.line(&file, line);
+        (described.file, described.line) = (Some(file), Some(line));
+    }
+    described
+}
+
+fn place(job: &Job, texts: &ProgramTexts, path: usize, open: &OpenBox) -> OpenPlace {
+    let mut place = OpenPlace::default();
+    (place.path, place.r#move) = (path, open.first.0);
+    place.time = [open.first.1, open.last.1];
+    let ([a, b, c], [d, e, f]) = (open.low, open.high);
+    place.r#box = [a, b, c, d, e, f];
+    if let Some((file, line)) = work::place(&job.paths[path], open.first.0, &texts.folder) {
+        (place.file, place.line) = (Some(file), Some(line));
+    }
+    place
+}
+
+/// The moves that were seen to go deeper than the limit.
+fn beyond(job: &Job, texts: &mut ProgramTexts, found: &Enclosed, limit: f64) -> Vec<ReportedFinding> {
+    let deep = found.moves.iter().filter(|(_, witness)| witness.depth > limit);
+    deep.map(|(number, witness)| {
+        let path = &job.paths[*number];
+        let mut finding = ReportedFinding::default();
+        finding.kind = "gouge".to_owned();
+        finding.between = true;
+        (finding.tool, finding.path, finding.r#move) = (Some(path.tool), Some(*number), Some(witness.number));
+        finding.setup = job.has_setups.then_some(path.setup);
+        if let Some((file, line)) = work::place(path, witness.number, &texts.folder) {
+            finding.text = texts.line(&file, line);
+            (finding.file, finding.line) = (Some(file), Some(line));
+        }
+        finding.time = Some(witness.time);
+        (finding.place, finding.depth) = (witness.place, witness.depth);
+        finding
+    })
+    .collect()
+}
+
+/// The verdict, if statements are asked for as well.
+pub(super) fn verdict(found: Verdict, statements: &[Statement]) -> Verdict {
+    let any = |state| statements.iter().any(|statement| statement.state == state);
+    match found {
+        Verdict::Fail => Verdict::Fail,
+        _ if any(StatementState::Refuted) => Verdict::Fail,
+        _ if any(StatementState::Open) => Verdict::Undecided,
+        _ => Verdict::Pass,
+    }
+}
