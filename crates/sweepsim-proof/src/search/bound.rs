@@ -11,7 +11,7 @@
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
 
 use super::reach::During;
-use crate::target::{Cell, Triangle, Way, is_outside};
+use crate::target::{Cell, MOST_WAYS, Triangle, Way, is_outside};
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
 
@@ -46,15 +46,16 @@ impl Above<'_> {
             normal: ways.first().map_or_else(Vector3::z, |way| way.normal),
             place: None,
         };
-        let below: Vec<f64> = ways.iter().map(|way| self.below(&way.normal)).collect();
-        for (way, below) in ways.iter().zip(&below) {
-            let value = way.top + below;
+        let mut below = [0.0; MOST_WAYS + 1];
+        for (way, below) in ways.iter().zip(&mut below) {
+            *below = self.below(&way.normal);
+            let value = way.top + *below;
             if way.out && value < best.value {
                 (best.value, best.normal) = (value, way.normal);
+                if value <= enough {
+                    return best;
+                }
             }
-        }
-        if best.value <= enough {
-            return best;
         }
         // Where all faces look about the same way, several planes are no better than one.
         let several = if self.cell.is_smooth(self.triangles) {
@@ -151,11 +152,11 @@ impl Above<'_> {
     /// Turns a normal towards where both solids are farther apart: by the points that touch first.
     fn descend(&self, enough: f64, best: &mut Depth) {
         let mut normal = best.normal;
-        let value_of = |normal: &Vector3<f64>| self.cell.top(normal).0 + self.below(normal);
+        let value_of = |normal: &Vector3<f64>| self.cell.top(normal, self.triangles).0 + self.below(normal);
         let mut value = value_of(&normal);
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..STEPS {
-            let apart = self.cell.top(&normal).1 - self.during.farthest(&-normal).1;
+            let apart = self.cell.top(&normal, self.triangles).1 - self.during.farthest(&-normal).1;
             let across = apart - normal * normal.dot(&apart);
             let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
                 break;

@@ -274,8 +274,18 @@ impl<'a> Search<'a> {
             // Most of them are not reached.
             let misses =
                 matches!(when, When::Node(number) if self.run.nodes[number].swept.misses(&child.centre, child.half));
-            if !misses && !matches!(child.near, Near::Outside) {
-                self.push(depth, child, when);
+            if misses || matches!(child.near, Near::Outside) {
+                continue;
+            }
+            let pieces = child.pieces().len();
+            let known = match pieces > 0 && pieces <= MOST_PIECES {
+                true => depth.min(child.depth(&target.triangles)),
+                false => depth,
+            };
+            if known <= self.enough() {
+                self.settle(known);
+            } else {
+                self.push(known, child, when);
             }
         }
         true

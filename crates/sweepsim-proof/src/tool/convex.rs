@@ -79,7 +79,7 @@ impl Convex {
         for arc in &self.arcs {
             let [from, to] = arc.normals;
             if cross(from, direction) >= 0.0 && cross(direction, to) >= 0.0 {
-                let length = direction[0].hypot(direction[1]);
+                let length = dot(direction, direction).sqrt();
                 let value = dot(direction, arc.centre) + arc.radius * length;
                 if value > best.0 && length > 0.0 {
                     let at = [0, 1].map(|k| arc.centre[k] + arc.radius * direction[k] / length);
