@@ -9,5 +9,5 @@ mod tool;
 pub use motion::Placement;
 pub use search::{Cutter, Enclosed, Limits, deepest};
 pub use statement::{OpenBox, Witness};
-pub use target::Target;
+pub use target::{Fault, Target};
 pub use tool::{Convex, cover};

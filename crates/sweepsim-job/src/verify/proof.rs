@@ -7,7 +7,7 @@ use crate::base::JobError;
 use crate::session::Session;
 use std::collections::BTreeMap;
 use sweepsim_formats::{Job, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict};
-use sweepsim_proof::{Convex, Cutter, Enclosed, Limits, OpenBox, Target, Witness, cover, deepest};
+use sweepsim_proof::{Convex, Cutter, Enclosed, Fault, Limits, OpenBox, Target, Witness, cover, deepest};
 
 /// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
 const WIDTH: f64 = 0.1;
@@ -16,6 +16,8 @@ const CHORDS: f64 = 0.01;
 /// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
 const PAIRS: usize = 4_000_000;
 const PAIRS_OF_MOVE: usize = 400;
+/// As many faults of the target are named.
+const FAULTS: usize = 3;
 /// As many open places are listed.
 const LISTED: usize = 100;
 
@@ -45,6 +47,10 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
         }
     };
     session.phase("proof");
+    if let Some(reason) = faulty(&solid) {
+        statement.reason = Some(reason);
+        return Ok(Some(Proven::open(statement)));
+    }
     let cutters: BTreeMap<u32, Vec<Convex>> = job
         .tools
         .iter()
@@ -65,9 +71,6 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
         pairs: PAIRS + PAIRS_OF_MOVE * job.moves(),
     };
     let found = deepest(&solid, &cutters, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
-    if std::env::var_os("SWEEPSIM_PAIRS").is_some() {
-        eprintln!("pairs {}", found.pairs);
-    }
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     statement.enclosure = [known, found.bound];
     statement.state = if found.bound <= least {
@@ -95,6 +98,28 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
         Vec::new()
     };
     Ok(Some(Proven { statement, findings }))
+}
+
+/// What is wrong with the triangles of a target, with some of the places.
+fn faulty(solid: &Target) -> Option<String> {
+    let faults = solid.faults(FAULTS + 1);
+    if faults.is_empty() {
+        return None;
+    }
+    let place = |fault: &Fault| {
+        let (what, at) = match fault {
+            Fault::Doubled(at) => ("has a face twice", at),
+            Fault::Crossing(at) => ("intersects itself", at),
+            _ => return "is no solid".to_owned(),
+        };
+        let [x, y, z] = at.map(|c| format!("{c:.3}"));
+        format!("{what} at ({x}, {y}, {z})")
+    };
+    let mut named: Vec<String> = faults.iter().take(FAULTS).map(place).collect();
+    if faults.len() > FAULTS {
+        named.push("…".to_owned());
+    }
+    Some(format!("the target {}", named.join(", ")))
 }
 
 impl Proven {

@@ -267,14 +267,18 @@ impl<'a> Search<'a> {
 
     fn divide_cell(&mut self, cell: &'a Cell, when: When, depth: f64) -> bool {
         let target = self.target;
-        let Some(children) = cell.children(&target.distance, &target.cells_left) else {
-            return false;
-        };
-        for child in children {
+        let half = 0.5 * cell.half;
+        for octant in 0..8 {
             // Most of them are not reached.
-            let misses =
-                matches!(when, When::Node(number) if self.run.nodes[number].swept.misses(&child.centre, child.half));
-            if misses || matches!(child.near, Near::Outside) {
+            if let When::Node(number) = when
+                && self.run.nodes[number].swept.misses(&cell.centre_of_child(octant), half)
+            {
+                continue;
+            }
+            let Some(child) = cell.child(octant, &target.distance, &target.cells_left) else {
+                return false;
+            };
+            if matches!(child.near, Near::Outside) {
                 continue;
             }
             let pieces = child.pieces().len();
