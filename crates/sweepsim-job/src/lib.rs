@@ -72,7 +72,7 @@ pub use session::{Guess, Plan};
 pub use shards::ShardNumber;
 pub use sweepsim::Monitor;
 pub use sweepsim_dexel as dexel;
-pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Verdict};
+pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Statement, StatementState, Verdict};
 pub use sweepsim_motion as motion;
 pub use warnings::is_covered;
 

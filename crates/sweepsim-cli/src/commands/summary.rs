@@ -1,7 +1,7 @@
 //! The summary of `simulate`, `sweep` and `verify`.
 
 use crate::session::{Failure, Lines, Outputs};
-use sweepsim_formats::{Report, ReportedFinding, Statement, StatementState, Verdict, WorkSummary};
+use sweepsim_formats::{Report, ReportedFinding, StatementState, Verdict, WorkSummary};
 use sweepsim_job::words::{self, clock, found, setup_name};
 use sweepsim_job::{Plan, Task, is_covered};
 
@@ -136,22 +136,24 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         );
         line("verdict", &text);
     } else if verdict == Verdict::Pass {
-        let text = "PASS on the dexels' lines only: nothing was found on them that does harm";
-        line("verdict", text);
+        let proven = if statements.is_empty() {
+            ""
+        } else {
+            " (gouges: proven everywhere)"
+        };
+        let text = format!("PASS on the dexels' lines only{proven}: nothing was found on them that does harm");
+        line("verdict", &text);
     } else if findings.is_empty() {
         line("verdict", "FAIL: the part deviates from its target");
     } else {
         line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
     }
     for statement in statements {
-        line("proof", &proof(statement));
+        line("proof", &words::proven(statement));
     }
     if let Some(scope) = &report.scope {
         let lines = words::looked_at(scope);
-        let text = match statements.is_empty() {
-            true => format!("lines {lines}; nothing between them"),
-            false => format!("lines {lines}; between them, only what is said under proof"),
-        };
+        let text = format!("lines {lines}; {}", words::between(report));
         line("looked at", &text);
         for missing in &scope.not_looked_at {
             line("not at", &format!("{} (needs {})", missing.about, missing.needs));
@@ -173,41 +175,6 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
             line(name, &format!("largest found {} mm", words::measure(max)));
         }
     }
-}
-
-/// A statement in one line.
-fn proof(statement: &Statement) -> String {
-    let [least, most] = statement.enclosure;
-    let limit = words::measure(statement.limit);
-    let mut text = match statement.state {
-        StatementState::Proven => format!(
-            "everywhere, no cutter goes deeper into the target than {limit} mm: at most {} mm",
-            words::measure(most)
-        ),
-        StatementState::Refuted => format!(
-            "a cutter goes deeper into the target than {limit} mm: at least {}, at most {} mm",
-            words::measure(least),
-            words::measure(most)
-        ),
-        StatementState::Open => match &statement.reason {
-            Some(reason) => format!("OPEN whether a cutter goes deeper into the target than {limit} mm: {reason}"),
-            None => format!(
-                "OPEN whether a cutter goes deeper into the target than {limit} mm: at most {} mm, {}",
-                words::measure(most),
-                words::counted(statement.open_count as u64, "open place")
-            ),
-        },
-    };
-    let shown = statement.state != StatementState::Proven || least > 0.0;
-    if let Some(witness) = statement.witness.as_ref().filter(|_| shown) {
-        let [x, y, z] = witness.place.map(|c| format!("{c:.3}"));
-        text += &format!("; deepest known at ({x}, {y}, {z})");
-        match (&witness.file, witness.line) {
-            (Some(file), Some(line)) => text += &format!(" by {file}:{line}"),
-            _ => text += &format!(" by path {}, move {}", witness.path, witness.r#move),
-        }
-    }
-    text
 }
 
 /// A finding in one line.

@@ -1,6 +1,6 @@
 //! Numbers and findings for people.
 
-use sweepsim_formats::{Report, ReportedFinding, Scope};
+use sweepsim_formats::{Report, ReportedFinding, Scope, Statement, StatementState};
 
 /// `1234567` as `1,234,567`.
 #[must_use]
@@ -143,6 +143,41 @@ pub fn found(findings: &[ReportedFinding]) -> Vec<String> {
 pub fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
     let setups = report.setups.as_deref()?;
     Some(&setups.get(number?)?.name)
+}
+
+/// What was looked at between the lines.
+#[must_use]
+pub fn between(report: &Report) -> &'static str {
+    match report.statements.as_deref() {
+        None | Some([]) => "nothing between them",
+        Some(_) => "between them, only gouges",
+    }
+}
+
+/// A statement in one sentence.
+#[must_use]
+pub fn proven(statement: &Statement) -> String {
+    let [least, most] = statement.enclosure;
+    let deeper = format!("deeper into the target than {} mm", measure(statement.limit));
+    let most = format!("at most {} mm", measure(most));
+    let mut text = match (statement.state, &statement.reason) {
+        (StatementState::Proven, _) => format!("everywhere and at all times, no cutter goes {deeper}: {most}"),
+        (StatementState::Refuted, _) => format!("a cutter goes {deeper}: at least {} mm, {most}", measure(least)),
+        (StatementState::Open, Some(reason)) => format!("OPEN whether a cutter goes {deeper}: {reason}"),
+        (StatementState::Open, None) => {
+            let places = counted(statement.open_count as u64, "place");
+            format!("OPEN whether a cutter goes {deeper}: {most}, not known in {places}")
+        }
+    };
+    if let Some(witness) = &statement.witness {
+        let [x, y, z] = witness.place.map(|c| format!("{c:.3}"));
+        text += &format!("; deepest known at ({x}, {y}, {z})");
+        text += &match (&witness.file, witness.line) {
+            (Some(file), Some(line)) => format!(" by {file}:{line}"),
+            _ => format!(" by path {}, move {}", witness.path, witness.r#move),
+        };
+    }
+    text
 }
 
 /// The lines that were looked at: `along x and y, 0.5 mm apart, …`.

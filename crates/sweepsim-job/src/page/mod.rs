@@ -16,7 +16,7 @@ use deviation::Deviated;
 use program::Programs;
 use sweepsim::verify::Target;
 use sweepsim_dexel::{Dexels, Source};
-use sweepsim_formats::{Job, MoveSummary, Report};
+use sweepsim_formats::{Job, MoveSummary, Report, StatementState};
 use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
 
 /// What the page is made of.
@@ -175,6 +175,21 @@ fn facts(source: &PageSource) -> Vec<Fact> {
             let small = format!("beyond the limit on {} mm²", measure(found.area));
             facts.push(Fact::new(name, format!("{} mm", measure(max)), small));
         }
+    }
+    for statement in report.statements.iter().flatten() {
+        let (state, [least, most]) = (statement.state, statement.enclosure);
+        let value = match state {
+            StatementState::Proven => format!("at most {} mm", measure(most)),
+            StatementState::Refuted => format!("at least {} mm", measure(least)),
+            _ => "open".to_owned(),
+        };
+        let words = match state {
+            StatementState::Proven => "proven everywhere",
+            StatementState::Refuted => "refuted",
+            _ => "not proven",
+        };
+        let limit = format!("{words}; the limit is {} mm", measure(statement.limit));
+        facts.push(Fact::new("Depth of gouges", value, limit));
     }
     if let Some(work) = report
         .work

@@ -1,7 +1,7 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::base::words::{counted, found, looked_at, setup_name};
+use crate::base::words::{between, counted, found, looked_at, proven, setup_name};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -16,6 +16,9 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
     let mut verdict = match (harmful.len() as u64, left) {
         (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Fail) => {
             Verdict::bad("May not be run: the part deviates from its target.")
+        }
+        (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Undecided) => {
+            Verdict::partial("Not decided: nothing was found that does harm, but not everything asked for is proven.")
         }
         (0, 0) if open > 0 => Verdict::bad("Not decided: nothing was found, but some lines are unresolved."),
         (0, 0)
@@ -37,11 +40,12 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
         (moves, _) => Verdict::bad(format!("May not be run: {} do harm.", counted(moves, "move"))),
     };
     verdict.details = found(findings);
+    verdict.details.extend(report.statements.iter().flatten().map(proven));
     if let Some(scope) = &report.scope {
         let lines = looked_at(scope);
         verdict
             .details
-            .push(format!("looked at: lines {lines}; nothing between them"));
+            .push(format!("looked at: lines {lines}; {}", between(report)));
         let missing = scope.not_looked_at.iter();
         let missing = missing.map(|missing| format!("not looked at: {} (needs {})", missing.about, missing.needs));
         verdict.details.extend(missing);
@@ -95,7 +99,10 @@ pub(super) fn findings(
             fact("Axis", detail.clone());
         } else {
             fact("Depth", format!("{} mm", measure(found.depth)));
-            fact("Volume", format!("{} mm³", measure(found.volume)));
+            match found.between {
+                true => fact("Found", "between the lines of the dexels".to_owned()),
+                false => fact("Volume", format!("{} mm³", measure(found.volume))),
+            }
         }
         if let Some(courses) = &found.courses {
             fact("Course of the rapid", courses.clone());

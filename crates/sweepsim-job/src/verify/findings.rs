@@ -32,8 +32,9 @@ pub(super) fn describe(
                 findings.iter().any(|other| other.kind == "gouge" && same(other))
             };
             let new: Vec<_> = proven.findings.into_iter().filter(|own| !seen(own)).collect();
+            let statement = proof::with_lines(proven.statement, &findings);
             findings.extend(new);
-            statements.push(proven.statement);
+            statements.push(statement);
         }
         report.statements = Some(statements.clone());
     }

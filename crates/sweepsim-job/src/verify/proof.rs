@@ -14,7 +14,7 @@ const WIDTH: f64 = 0.1;
 /// Concave outlines are replaced by chords within this part of the limit.
 const CHORDS: f64 = 0.01;
 /// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
-const PAIRS: usize = 4_000_000;
+const PAIRS: usize = 500_000;
 const PAIRS_OF_MOVE: usize = 400;
 /// As many faults of the target are named.
 const FAULTS: usize = 3;
@@ -187,6 +187,27 @@ fn beyond(job: &Job, texts: &mut ProgramTexts, found: &Enclosed, limit: f64) -> 
         finding
     })
     .collect()
+}
+
+/// The same statement, if what was found on the lines refutes it.
+pub(super) fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Statement {
+    let gouges = findings.iter().filter(|finding| finding.kind == "gouge");
+    let Some(deepest) = gouges.max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
+        return statement;
+    };
+    if statement.state == StatementState::Open {
+        statement.state = StatementState::Refuted;
+        // On a line, the cutter is where no cutter may be: deeper than the limit, by how much is not said.
+        statement.enclosure[0] = statement.enclosure[0].max(statement.limit);
+        statement.reason = None;
+        let mut witness = StatementWitness::default();
+        (witness.path, witness.r#move) = (deepest.path.unwrap_or_default(), deepest.r#move.unwrap_or_default());
+        (witness.file, witness.line) = (deepest.file.clone(), deepest.line);
+        (witness.text, witness.place) = (deepest.text.clone(), deepest.place);
+        witness.time = deepest.time.unwrap_or_default();
+        statement.witness = Some(witness);
+    }
+    statement
 }
 
 /// The verdict, if statements are asked for as well.

@@ -2,7 +2,7 @@
 
 use sweepsim_job::dexel::{Stock, TriangleSoup};
 use sweepsim_job::motion::Tool;
-use sweepsim_job::{Directions, Outcome, Request, Verdict};
+use sweepsim_job::{Directions, Judging, Outcome, Request, StatementState, Verdict};
 
 /// A slot along x, 10 mm wide about y = 20 and 4 mm deep, by an end mill of 10 mm.
 pub const PROGRAM: &str = "G21 G90\nT1 M6\nS6000 M3\nG0 X-8 Y20 Z5\nG0 Z-4\nG1 X68 F500\nG0 Z5\nM30\n";
@@ -74,6 +74,27 @@ fn gouge() -> Vec<(String, Option<usize>)> {
     vec![("gouge".to_owned(), Some(6))]
 }
 
+/// Enclosures are no wider than a tenth of the limit.
+const NARROW: f64 = 0.1 * LIMIT;
+
+/// The state of what is said of gouges everywhere: the depth is in its enclosure, no wider than this.
+fn proven(outcome: &Outcome, depth: f64, width: f64) -> StatementState {
+    let statements = outcome.report().statements.as_deref().expect("statements");
+    let [statement] = statements else {
+        panic!("{statements:?}")
+    };
+    let [least, most] = statement.enclosure;
+    assert!(least <= depth && depth <= most, "{depth} in {least} … {most}");
+    assert!(most - least <= width, "{least} … {most}");
+    assert_eq!((statement.about.as_str(), statement.limit), ("gouge", LIMIT));
+    if least > 0.0 {
+        let witness = statement.witness.as_ref().expect("a witness");
+        assert_eq!(witness.line, Some(6));
+        assert_eq!(witness.text.as_deref(), Some("G1 X68 F500"));
+    }
+    statement.state
+}
+
 /// Ends of lines are exact to the job's tolerance, and walls are planes: rounding is all that is left.
 const EXACT: f64 = 1e-5;
 
@@ -84,6 +105,7 @@ fn the_right_slot_passes() {
     assert_eq!(findings, []);
     assert_eq!(outcome.verdict(), Some(Verdict::Pass));
     assert!(largest.iter().all(|largest| *largest < EXACT), "{largest:?}");
+    assert_eq!(proven(&outcome, 0.0, NARROW), StatementState::Proven);
 }
 
 #[test]
@@ -100,6 +122,7 @@ fn faults_of_walls_and_floors_are_found() {
         assert_eq!(findings, gouge(), "{sides:?} {floor}");
         assert!((deepest - depth).abs() < EXACT, "{deepest} instead of {depth}");
         assert!(highest < EXACT, "{highest}");
+        assert_eq!(proven(&outcome, depth, NARROW), StatementState::Refuted);
     }
     // Within the limits.
     for (sides, floor) in [([15.019, 25.0], -4.0), ([15.0, 25.0], -3.981)] {
@@ -107,6 +130,7 @@ fn faults_of_walls_and_floors_are_found() {
         let (findings, [deepest, _]) = found(&outcome);
         assert_eq!(findings, [], "{sides:?} {floor}");
         assert!((deepest - 0.019).abs() < EXACT, "{deepest}");
+        assert_eq!(proven(&outcome, 0.019, NARROW), StatementState::Proven);
     }
 }
 
@@ -134,8 +158,32 @@ fn a_rib_that_is_milled_away_is_found() {
     assert_eq!(findings, gouge());
     // As deep as it is thick, or half of that at its middle.
     assert!((0.05 - EXACT..0.1 + EXACT).contains(&deepest), "{deepest}");
-    // Along z alone no line meets it: the other directions found it.
-    let along_z = request(target).directions(Directions::Z);
-    let outcome = along_z.plan().unwrap().run(&()).unwrap();
-    assert_eq!(outcome.verdict(), Some(Verdict::Pass));
+    assert_eq!(proven(&outcome, 0.05, LIMIT), StatementState::Refuted);
+    // Along z alone no line meets it: the other directions found it, and so does the proof.
+    let along_z = |proof: bool| {
+        let mut judging = Judging::default();
+        judging.proof = proof;
+        let request = request(target.clone()).directions(Directions::Z).judging(judging);
+        request.plan().unwrap().run(&()).unwrap()
+    };
+    assert_eq!(along_z(false).verdict(), Some(Verdict::Pass));
+    assert_eq!(along_z(false).report().statements, None);
+    let outcome = along_z(true);
+    assert_eq!(found(&outcome).0, gouge());
+    assert!(outcome.findings()[0].between);
+    assert_eq!(proven(&outcome, 0.05, LIMIT), StatementState::Refuted);
+}
+
+#[test]
+fn nothing_is_proven_of_a_target_that_crosses_itself() {
+    let mut target = slotted([15.0, 25.0], -4.0);
+    // Into the floor, well beside the dexels' lines.
+    let peg = TriangleSoup::block([30.2, 30.2, -5.0], [30.3, 30.3, 1.0]);
+    target.triangles.extend(peg.triangles);
+    let outcome = judged(target);
+    let statements = outcome.report().statements.as_deref().expect("statements");
+    assert_eq!(statements[0].state, StatementState::Open);
+    let reason = statements[0].reason.as_deref().expect("a reason");
+    assert!(reason.starts_with("the target intersects itself at (30."), "{reason}");
+    assert_eq!(outcome.verdict(), Some(Verdict::Undecided));
 }

@@ -50,7 +50,7 @@ impl Above<'_> {
         for (way, below) in ways.iter().zip(&mut below) {
             *below = self.below(&way.normal);
             let value = way.top + *below;
-            if way.out && value < best.value {
+            if way.out && value < best.value && value <= self.cell.half {
                 (best.value, best.normal) = (value, way.normal);
                 if value <= enough {
                     return best;
@@ -79,10 +79,6 @@ impl Above<'_> {
             }
         }
         self.descend(enough, &mut best);
-        // Only as far as the surroundings are known.
-        if best.value > self.cell.half {
-            best.value = f64::INFINITY;
-        }
         best
     }
 
@@ -172,7 +168,8 @@ impl Above<'_> {
                 break;
             }
         }
-        if value < best.value && self.cell.way(normal, self.triangles).out {
+        let better = value < best.value && value <= self.cell.half;
+        if better && self.cell.way(normal, self.triangles).out {
             (best.value, best.normal, best.place) = (value, normal, None);
         }
     }
@@ -180,11 +177,14 @@ impl Above<'_> {
     /// Whether no point of the solid is in the cell.
     pub fn misses(&self) -> bool {
         let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(&-normal));
+        // Away from the axis, or beyond one of its ends.
         let away = self.during.core(&self.cell.centre) - self.cell.centre;
-        let Some(mut normal) = away.try_normalize(1e-12) else {
+        let axis = self.during.ends[0].axis;
+        let starts = away.try_normalize(1e-12).into_iter().chain([axis, -axis]);
+        let best = starts.map(|normal| (gap(&normal), normal));
+        let Some((mut value, mut normal)) = best.max_by(|a, b| a.0.total_cmp(&b.0)) else {
             return false;
         };
-        let mut value = gap(&normal);
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..2 * STEPS {
             if value > 0.0 {

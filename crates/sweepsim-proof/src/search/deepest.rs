@@ -255,10 +255,17 @@ impl<'a> Search<'a> {
         };
         let duration = times[1] - times[0];
         let moves = self.run.stretches[stretch].travel(self.run.reach, duration) > 2.0 * cell.half;
-        if !(moves || bends) || duration < 1e-9 {
+        let middle = 0.5 * (times[0] + times[1]);
+        // Where the solid is, shorter times do not help.
+        let is_there = || {
+            let placement = self.run.stretches[stretch].at(middle);
+            let off = cell.centre - placement.tip;
+            let along = off.dot(&placement.axis);
+            self.run.solid.contains([(off - placement.axis * along).norm(), along])
+        };
+        if !(moves || bends) || duration < 1e-9 || is_there() {
             return self.divide_cell(cell, when, depth);
         }
-        let middle = 0.5 * (times[0] + times[1]);
         for times in [[times[0], middle], [middle, times[1]]] {
             self.push(depth, cell, When::Part { stretch, times });
         }
@@ -281,10 +288,10 @@ impl<'a> Search<'a> {
             if matches!(child.near, Near::Outside) {
                 continue;
             }
-            let pieces = child.pieces().len();
-            let known = match pieces > 0 && pieces <= MOST_PIECES {
-                true => depth.min(child.depth(&target.triangles)),
-                false => depth,
+            let known = match child.pieces().len() {
+                0 => depth.min(child.deepest(&target.distance)),
+                1..=MOST_PIECES => depth.min(child.depth(&target.triangles)),
+                _ => depth,
             };
             if known <= self.enough() {
                 self.settle(known);

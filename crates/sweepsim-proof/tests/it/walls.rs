@@ -127,3 +127,26 @@ fn a_rib_that_is_milled_away_is_half_as_deep_as_it_is_thick() {
     let rib = ([-4.0, 0.3, 3.0], [4.0, 0.4, 7.0]);
     check(&blocks(&[block, rib]), 0.05);
 }
+
+#[test]
+fn so_is_one_that_stands_on_the_floor() {
+    let profile = [
+        [-20.0, -10.0],
+        [20.0, -10.0],
+        [20.0, 10.0],
+        [5.0, 10.0],
+        [5.0, 2.0],
+        [0.4, 2.0],
+        [0.4, 7.0],
+        [0.3, 7.0],
+        [0.3, 2.0],
+        [-5.0, 2.0],
+        [-5.0, 10.0],
+        [-20.0, 10.0],
+    ];
+    // Along its foot, cells see the floor before they see both sides: the bound is not as narrow.
+    let found = judged(&extruded(&profile, [-30.0, 30.0]));
+    let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
+    assert!(known >= 0.05 - 0.002 && known <= 0.05 && found.bound >= 0.05);
+    assert_eq!(found.moves[0].1.number, 1);
+}
