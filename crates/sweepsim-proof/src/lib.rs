@@ -1,4 +1,10 @@
-//! Statements about milling programs that hold at every time and in every place.
+//! How deep the cutters of a milling program go into a solid, at every time and in every place.
+//!
+//! [`deepest`] encloses the depth for [cutters](Cutter) on their paths and a [`Target`] between triangles, by branch and
+//! bound over times and cells of space. A tool is given as convex solids of revolution that [cover](cover) it. Lengths
+//! are in millimetres, or in any other unit that all of them have.
+//!
+//! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
 
 mod motion;
 mod search;
@@ -11,3 +17,8 @@ pub use search::{Cutter, Enclosed, Limits, deepest};
 pub use statement::{OpenBox, Witness};
 pub use target::{Fault, Target};
 pub use tool::{Convex, cover};
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -82,6 +82,7 @@ fn run(request: Request) -> (Memory, i32) {
     let written = outcome.write_to(&mut made, &wanted, &()).unwrap();
     let status = match outcome.verdict() {
         Some(sweepsim_job::Verdict::Fail) => 1,
+        Some(sweepsim_job::Verdict::Undecided) => 3,
         _ if written.certified => 0,
         _ => 3,
     };

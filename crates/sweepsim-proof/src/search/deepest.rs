@@ -355,8 +355,12 @@ impl<'a> Search<'a> {
     }
 
     fn leave(&mut self, pair: &Pair, depth: f64) {
-        self.settle(depth);
         let cell = pair.cell;
+        let depth = depth.min(cell.deepest(&self.target.distance));
+        if depth <= self.enough() {
+            return self.settle(depth);
+        }
+        self.settle(depth);
         let (first, last) = match pair.when {
             When::Node(number) => {
                 let node = &self.run.nodes[number];
