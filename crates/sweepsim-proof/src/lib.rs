@@ -1,7 +1,7 @@
 //! How deep the cutters of a milling program go into a solid, at every time and in every place.
 //!
-//! [`deepest`] encloses the depth for [cutters](Cutter) on their paths and a [`Target`] between triangles, by branch and
-//! bound over times and cells of space. A tool is given as convex solids of revolution that [cover](cover) it. Lengths
+//! [`deepest`] encloses the depth for [cutters](Cutter) on their paths and a [`Target`] between triangles, by branch
+//! and bound over times and cells of space. A tool is given as convex solids of revolution that [`cover`] it. Lengths
 //! are in millimetres, or in any other unit that all of them have.
 //!
 //! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
