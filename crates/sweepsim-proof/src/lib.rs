@@ -8,14 +8,14 @@
 
 mod motion;
 mod search;
+mod solid;
 mod statement;
-mod target;
 mod tool;
 
 pub use motion::Placement;
 pub use search::{Cutter, Enclosed, Limits, deepest};
+pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
-pub use target::{Fault, Target};
 pub use tool::{Convex, cover};
 
 /// The README's example is tested.

@@ -11,7 +11,7 @@
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
 
 use super::reach::During;
-use crate::target::{Cell, MOST_WAYS, Triangle, Way, is_outside};
+use crate::solid::{Cell, MOST_WAYS, Triangle, Way, is_outside};
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
 

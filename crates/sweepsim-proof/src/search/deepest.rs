@@ -3,8 +3,8 @@
 use super::bound::{Above, Depth};
 use super::reach::During;
 use crate::motion::{Run, Stretch};
+use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
-use crate::target::{Cell, MOST_PIECES, Near, Target};
 use nalgebra::Vector3;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};

@@ -2,8 +2,8 @@
 
 use super::deepest::{Found, SHARE, Search, Wanted};
 use crate::motion::{Run, Stretch};
+use crate::solid::Target;
 use crate::statement::{OpenBox, Witness};
-use crate::target::Target;
 use crate::tool::Convex;
 use rayon::prelude::*;
 use std::ops::Range;

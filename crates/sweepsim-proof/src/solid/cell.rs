@@ -1,0 +1,387 @@
+//! Cubes of space, with what of a solid's surface is near them.
+//!
+//! A cell is a cube `H`; its surroundings `H′` are the cube of twice its size around the same centre. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
+
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use sweepsim_dexel::DistanceTo;
+
+/// A triangle of the surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Triangle {
+    pub corners: [Vector3<f64>; 3],
+    /// Unit normal, out of the solid.
+    pub normal: Vector3<f64>,
+}
+
+/// Part of a triangle: a convex polygon.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    pub triangle: u32,
+    pub corners: SmallVec<[Vector3<f64>; 4]>,
+}
+
+/// What is near a cell.
+#[derive(Clone, Debug)]
+pub(crate) enum Near {
+    /// Some of the surface.
+    Surface(Vec<Piece>),
+    /// All of the surroundings are in the solid.
+    Inside,
+    /// None of them is.
+    Outside,
+}
+
+/// A direction in which a cutter may be lifted off what is near a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub normal: Vector3<f64>,
+    /// The highest value along it of the surface in the surroundings.
+    pub top: f64,
+    /// Whether beyond that the surroundings are outside of the solid.
+    pub out: bool,
+}
+
+/// What is found out of a cell with some of the surface near it, when it is first looked at.
+#[derive(Debug)]
+struct Known {
+    /// The corners of the pieces, each once.
+    corners: Vec<Vector3<f64>>,
+    ways: Vec<Way>,
+    /// Whether all triangles look about the same way.
+    is_smooth: bool,
+    /// No point of the cell is deeper.
+    depth: f64,
+}
+
+#[derive(Debug)]
+pub(crate) struct Cell {
+    pub centre: Vector3<f64>,
+    pub half: f64,
+    pub near: Near,
+    known: OnceLock<Known>,
+    deepest: OnceLock<f64>,
+    children: OnceLock<Box<[OnceLock<Cell>; 8]>>,
+}
+
+/// Cells with more pieces than this are divided before they are looked at.
+pub(crate) const MOST_PIECES: usize = 256;
+/// As many directions are tried.
+pub(crate) const MOST_WAYS: usize = 8;
+/// Normals whose cosine is larger count as one direction.
+const SAME_WAY: f64 = 0.999;
+/// Normals whose cosine with their mean is larger, all of them, make a smooth surface.
+const SMOOTH: f64 = 0.9;
+/// Surroundings are this much larger than twice the cell.
+const MARGIN: f64 = 1e-3;
+
+impl Cell {
+    /// `pieces`: those of the surface that may be near.
+    pub fn new(centre: Vector3<f64>, half: f64, pieces: &[Piece], distance: &DistanceTo) -> Self {
+        let clipped = clipped(pieces, &centre, half + half);
+        let near = match clipped.is_empty() {
+            false => Near::Surface(clipped),
+            true if depth(distance, &centre) < 0.0 => Near::Outside,
+            true => Near::Inside,
+        };
+        Self::with(centre, half, near)
+    }
+
+    fn with(centre: Vector3<f64>, half: f64, near: Near) -> Self {
+        Self {
+            centre,
+            half,
+            near,
+            known: OnceLock::new(),
+            deepest: OnceLock::new(),
+            children: OnceLock::new(),
+        }
+    }
+
+    pub fn pieces(&self) -> &[Piece] {
+        match &self.near {
+            Near::Surface(pieces) => pieces,
+            _ => &[],
+        }
+    }
+
+    /// No point of the cell is deeper in the solid: depths change no faster than places.
+    pub fn deepest(&self, distance: &DistanceTo) -> f64 {
+        *self
+            .deepest
+            .get_or_init(|| depth(distance, &self.centre) + 3_f64.sqrt() * self.half)
+    }
+
+    /// Where each of the eight cells is that it consists of; all have half its size.
+    pub fn centre_of_child(&self, octant: usize) -> Vector3<f64> {
+        let half = 0.5 * self.half;
+        self.centre + Vector3::from_fn(|k, _| if octant >> k & 1 == 0 { -half } else { half })
+    }
+
+    /// One of them. `None` if there are as many cells as there may be.
+    pub fn child(&self, octant: usize, distance: &DistanceTo, left: &AtomicUsize) -> Option<&Self> {
+        let children = self.children.get_or_init(Box::default);
+        let child = &children[octant];
+        if child.get().is_none() {
+            let take = |left: usize| left.checked_sub(1 + self.pieces().len() / 16);
+            left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
+        }
+        Some(child.get_or_init(|| {
+            let (centre, half) = (self.centre_of_child(octant), 0.5 * self.half);
+            match &self.near {
+                Near::Surface(pieces) => Self::new(centre, half, pieces, distance),
+                near => Self::with(centre, half, near.clone()),
+            }
+        }))
+    }
+
+    /// Directions to try: the mean normal, and those of the triangles.
+    pub fn ways(&self, triangles: &[Triangle]) -> &[Way] {
+        &self.known(triangles).ways
+    }
+
+    /// Whether all triangles near it look about the same way.
+    pub fn is_smooth(&self, triangles: &[Triangle]) -> bool {
+        self.known(triangles).is_smooth
+    }
+
+    /// No point of the cell is deeper than this in the solid, as far as the directions to try say.
+    pub fn depth(&self, triangles: &[Triangle]) -> f64 {
+        self.known(triangles).depth
+    }
+
+    fn known(&self, triangles: &[Triangle]) -> &Known {
+        self.known.get_or_init(|| {
+            let pieces = self.pieces();
+            let mut corners: Vec<Vector3<f64>> =
+                pieces.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
+            let bits = |p: &Vector3<f64>| [p.x, p.y, p.z].map(f64::to_bits);
+            corners.sort_unstable_by_key(bits);
+            corners.dedup_by_key(|p| bits(p));
+            let (normals, is_smooth) = self.normals(triangles);
+            let mut known = Known {
+                corners,
+                ways: Vec::new(),
+                is_smooth,
+                depth: f64::INFINITY,
+            };
+            for normal in normals {
+                let way = self.way_above(normal, triangles, &known.corners);
+                let depth = way.top + self.support(&-normal);
+                if way.out && depth <= self.half {
+                    known.depth = known.depth.min(depth);
+                }
+                known.ways.push(way);
+            }
+            known
+        })
+    }
+
+    /// The mean normal and those of the triangles, as far as they differ; and whether all are nearly the same.
+    fn normals(&self, triangles: &[Triangle]) -> (Vec<Vector3<f64>>, bool) {
+        let pieces = self.pieces();
+        let mut clusters: Vec<(Vector3<f64>, f64)> = Vec::new();
+        for piece in pieces {
+            let normal = triangles[piece.triangle as usize].normal;
+            let area = area(&piece.corners);
+            match clusters.iter_mut().find(|(other, _)| other.dot(&normal) > SAME_WAY) {
+                Some((_, sum)) => *sum += area,
+                None => clusters.push((normal, area)),
+            }
+        }
+        let sum: Vector3<f64> = clusters.iter().map(|(normal, area)| normal * *area).sum();
+        let mean = sum.try_normalize(1e-300).filter(|_| clusters.len() > 1);
+        let is_smooth = mean.is_none_or(|mean| {
+            let normal = |piece: &Piece| triangles[piece.triangle as usize].normal;
+            pieces.iter().all(|piece| normal(piece).dot(&mean) > SMOOTH)
+        });
+        // A stable sort: the largest first. Of a smooth surface, one is enough.
+        clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
+        clusters.truncate(if is_smooth { 1 } else { MOST_WAYS });
+        let own = clusters.iter().map(|(normal, _)| *normal);
+        (mean.into_iter().chain(own).collect(), is_smooth)
+    }
+
+    /// What is known of a direction.
+    pub fn way(&self, normal: Vector3<f64>, triangles: &[Triangle]) -> Way {
+        self.way_above(normal, triangles, &self.known(triangles).corners)
+    }
+
+    fn way_above(&self, normal: Vector3<f64>, triangles: &[Triangle], corners: &[Vector3<f64>]) -> Way {
+        let top = highest(corners, &normal).0;
+        let above = || self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
+        let out =
+            faces_up(self.pieces(), triangles, &normal) || is_outside(&above(), self.pieces(), triangles) == Some(true);
+        Way { normal, top, out }
+    }
+
+    /// The highest value of the surface along a direction, and where.
+    pub fn top(&self, direction: &Vector3<f64>, triangles: &[Triangle]) -> (f64, Vector3<f64>) {
+        let (top, number) = highest(&self.known(triangles).corners, direction);
+        (top, self.known(triangles).corners[number])
+    }
+
+    /// The middle of the corners of one piece that are as high as the highest.
+    fn middle_of_top(&self, direction: &Vector3<f64>, top: f64) -> Vector3<f64> {
+        let near = top - 1e-6 * self.half;
+        let highest = |piece: &Piece| {
+            let high = || piece.corners.iter().filter(|corner| direction.dot(corner) >= near);
+            (high().count(), high().sum::<Vector3<f64>>())
+        };
+        let all = self.pieces().iter().map(highest);
+        let most = all.max_by_key(|(count, _)| *count);
+        most.filter(|(count, _)| *count > 0)
+            .map_or(self.centre, |(count, sum)| sum / count as f64)
+    }
+
+    /// The largest `⟨direction, x⟩` in the cell.
+    pub fn support(&self, direction: &Vector3<f64>) -> f64 {
+        direction.dot(&self.centre) + self.half * direction.lp_norm(1)
+    }
+}
+
+/// The highest value of points along a direction, and the number of the first that is as high.
+fn highest(points: &[Vector3<f64>], direction: &Vector3<f64>) -> (f64, usize) {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (number, point) in points.iter().enumerate() {
+        let value = direction.dot(point);
+        if value > best.0 {
+            best = (value, number);
+        }
+    }
+    best
+}
+
+fn area(corners: &[Vector3<f64>]) -> f64 {
+    let fan = corners.windows(2).skip(1);
+    let twice: Vector3<f64> = fan
+        .map(|pair| (pair[0] - corners[0]).cross(&(pair[1] - corners[0])))
+        .sum();
+    0.5 * twice.norm()
+}
+
+/// Whether no triangle faces down, and one faces up: then what is just above all of them is outside.
+fn faces_up(pieces: &[Piece], triangles: &[Triangle], normal: &Vector3<f64>) -> bool {
+    let cosines = || {
+        pieces
+            .iter()
+            .map(|piece| triangles[piece.triangle as usize].normal.dot(normal))
+    };
+    cosines().all(|cosine| cosine >= 0.0) && cosines().any(|cosine| cosine > 0.01)
+}
+
+/// The parts of pieces in surroundings, and a little beyond.
+fn clipped(pieces: &[Piece], centre: &Vector3<f64>, half: f64) -> Vec<Piece> {
+    let within = |piece: &Piece| {
+        let corners = clip(&piece.corners, centre, half * (1.0 + MARGIN))?;
+        Some(Piece {
+            triangle: piece.triangle,
+            corners,
+        })
+    };
+    pieces.iter().filter_map(within).collect()
+}
+
+/// A convex polygon within a cube; `None` if nothing is left.
+fn clip(corners: &[Vector3<f64>], centre: &Vector3<f64>, half: f64) -> Option<SmallVec<[Vector3<f64>; 4]>> {
+    let (mut all, mut some) = (true, true);
+    for k in 0..3 {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for corner in corners {
+            low = low.min(corner[k] - centre[k]);
+            high = high.max(corner[k] - centre[k]);
+        }
+        some &= low <= half && high >= -half;
+        all &= low >= -half && high <= half;
+    }
+    if all || !some {
+        return some.then(|| corners.iter().copied().collect());
+    }
+    let mut polygon: SmallVec<[Vector3<f64>; 8]> = corners.iter().copied().collect();
+    for k in 0..3 {
+        for side in [1.0, -1.0] {
+            let above = |p: &Vector3<f64>| side * (p[k] - centre[k]) - half;
+            let mut kept = SmallVec::new();
+            for (i, a) in polygon.iter().enumerate() {
+                let b = &polygon[(i + 1) % polygon.len()];
+                let (u, v) = (above(a), above(b));
+                if u <= 0.0 {
+                    kept.push(*a);
+                }
+                if (u < 0.0 && v > 0.0) || (u > 0.0 && v < 0.0) {
+                    kept.push(a + (b - a) * (u / (u - v)));
+                }
+            }
+            polygon = kept;
+            if polygon.is_empty() {
+                return None;
+            }
+        }
+    }
+    Some(polygon.into_iter().collect())
+}
+
+/// How deep a point is in the solid; negative outside.
+pub(super) fn depth(distance: &DistanceTo, point: &Vector3<f64>) -> f64 {
+    let nearest = distance.nearest((*point).into());
+    nearest.map_or(f64::NEG_INFINITY, |near| -near.distance)
+}
+
+/// As many targets are tried.
+const TRIES: usize = 12;
+
+/// Whether a point is outside, if all that lies between it and the pieces is among them: by the first triangle on the
+/// way to the middle of one. `None` if every way meets an edge.
+pub(crate) fn is_outside(point: &Vector3<f64>, pieces: &[Piece], triangles: &[Triangle]) -> Option<bool> {
+    let step = pieces.len().div_ceil(TRIES).max(1);
+    pieces.iter().step_by(step).find_map(|piece| {
+        let count = piece.corners.len() as f64;
+        let target = piece.corners.iter().sum::<Vector3<f64>>() / count;
+        let way = target - point;
+        let mut first: Option<(f64, f64)> = None;
+        for other in pieces {
+            let triangle = &triangles[other.triangle as usize];
+            let slope = triangle.normal.dot(&way);
+            let [a, b, c] = triangle.corners;
+            let height = triangle.normal.dot(&(a - point));
+            if slope.abs() <= 1e-7 * way.norm() {
+                // Along the triangle: only near its plane can it be met.
+                if height.abs() <= 1e-6 * way.norm() {
+                    return None;
+                }
+                continue;
+            }
+            let t = height / slope;
+            if t < -1e-9 || first.is_some_and(|(before, _)| t > before + 1e-9) {
+                continue;
+            }
+            let at = point + way * t;
+            let edges = [(a, b), (b, c), (c, a)];
+            // The heights above the edges, in parts of the triangle's.
+            let least = edges.iter().map(|(p, q)| {
+                let inwards = triangle.normal.cross(&(q - p));
+                let scale = [a, b, c]
+                    .iter()
+                    .map(|corner| inwards.dot(&(corner - p)))
+                    .fold(0.0, f64::max);
+                inwards.dot(&(at - p)) / scale
+            });
+            let least = least.fold(f64::INFINITY, f64::min);
+            if least < -1e-7 {
+                continue;
+            }
+            if least < 1e-7 || t < 1e-9 {
+                return None;
+            }
+            match first {
+                // Two at once: it is not known which is first.
+                Some((before, other)) if (t - before).abs() <= 1e-9 && other.signum() != slope.signum() => return None,
+                Some((before, _)) if t > before => {}
+                _ => first = Some((t, slope)),
+            }
+        }
+        first.map(|(_, slope)| slope < 0.0)
+    })
+}

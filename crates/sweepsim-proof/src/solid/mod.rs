@@ -1,0 +1,81 @@
+//! The solid that must not be cut.
+
+mod cell;
+mod faults;
+
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Piece, Triangle, Way, is_outside};
+
+pub use faults::Fault;
+
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+use std::sync::atomic::AtomicUsize;
+use sweepsim_dexel::{DistanceTo, MeshError, TriangleSoup};
+
+/// A solid between closed triangles, prepared for proofs.
+#[derive(Debug)]
+pub struct Target {
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) root: Cell,
+    pub(crate) distance: DistanceTo,
+    /// How many more cells there may be.
+    pub(crate) cells_left: AtomicUsize,
+    /// A bound of all coordinates.
+    pub(crate) size: f64,
+}
+
+/// At most as many cells, of about 300 bytes each.
+const MOST_CELLS: usize = 2_000_000;
+
+impl Target {
+    /// # Errors
+    /// The triangles do not enclose a solid.
+    pub fn new(soup: &TriangleSoup) -> Result<Self, MeshError> {
+        soup.check_closed()?;
+        let distance = DistanceTo::new(soup)?;
+        let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        let mut triangles = Vec::with_capacity(soup.triangles.len());
+        for corners in &soup.triangles {
+            let corners = corners.map(Vector3::from);
+            for corner in &corners {
+                low = low.inf(corner);
+                high = high.sup(corner);
+            }
+            // A triangle without area has no side; what it covers belongs to its neighbours' edges.
+            let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            if let Some(normal) = normal.try_normalize(0.0) {
+                triangles.push(Triangle { corners, normal });
+            }
+        }
+        let pieces: Vec<Piece> = triangles
+            .iter()
+            .enumerate()
+            .map(|(number, triangle)| Piece {
+                triangle: number as u32,
+                corners: SmallVec::from_slice(&triangle.corners),
+            })
+            .collect();
+        let half = 0.5 * (high - low).max() * (1.0 + 1e-9);
+        let size = low.amax().max(high.amax());
+        Ok(Self {
+            root: Cell::new(0.5 * (low + high), half, &pieces, &distance),
+            triangles,
+            distance,
+            cells_left: AtomicUsize::new(MOST_CELLS),
+            size,
+        })
+    }
+
+    /// Where its triangles cross or cover each other, at most so many places: nothing can be proven of what is inside.
+    #[must_use]
+    pub fn faults(&self, most: usize) -> Vec<Fault> {
+        let triangles: Vec<_> = self.triangles.iter().map(|triangle| triangle.corners).collect();
+        faults::faults(&triangles, most)
+    }
+
+    /// How deep a point lies in the solid; negative outside.
+    #[must_use]
+    pub fn depth(&self, point: [f64; 3]) -> f64 {
+        cell::depth(&self.distance, &point.into())
+    }
+}
