@@ -1,6 +1,7 @@
 //! Cubes of space, with what of a solid's surface is near them.
 //!
-//! A cell is a cube `H`; its surroundings `H′` are the cube of twice its size around the same centre. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
+//! A cell is a cube `H`; its surroundings `H′` are the cube of twice its size around the same centre. It knows the
+//! triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
 
 use nalgebra::Vector3;
 use smallvec::SmallVec;
