@@ -91,12 +91,6 @@ fn judged(target: &Target) -> Enclosed {
 fn check(target: &Target, truth: f64) {
     let found = judged(target);
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
-    println!(
-        "{truth}: {known} {} in {} pairs, {} open",
-        found.bound,
-        found.pairs,
-        found.open.len()
-    );
     assert!(found.open.is_empty(), "{:?}", &found.open[..found.open.len().min(10)]);
     assert!(
         known <= truth + 1e-12 && truth <= found.bound,
