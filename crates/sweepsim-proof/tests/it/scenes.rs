@@ -250,7 +250,9 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
         let number = (at as usize).min(segments.len() - 1);
         let (turn, tip) = segments[number].at(segments[number].at_time(at - number as f64));
         let own = turn.transpose() * (Vector3::from(witness.place) - Vector3::from(tip));
-        let radius = [-1e-6, 0.0, 1e-6]
+        // The segments of a proof are so near to the move.
+        let off = 1e-3 * limits.width + 1e-6;
+        let radius = [-off, 0.0, off]
             .map(|off| radius_at(&tool, own.z + off))
             .into_iter()
             .fold(0.0, f64::max);
