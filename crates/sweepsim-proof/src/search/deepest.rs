@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
                 (during, true)
             }
         };
-        let pieces = cell.pieces().len();
+        let pieces = cell.count();
         let mut depth = Depth {
             value: pair.depth,
             normal: Vector3::z(),
@@ -282,13 +282,13 @@ impl<'a> Search<'a> {
             {
                 continue;
             }
-            let Some(child) = cell.child(octant, &target.distance, &target.cells_left) else {
+            let Some(child) = cell.child(octant, &target.triangles, &target.distance, &target.cells_left) else {
                 return false;
             };
             if matches!(child.near, Near::Outside) {
                 continue;
             }
-            let known = match child.pieces().len() {
+            let known = match child.count() {
                 0 => depth.min(child.deepest(&target.distance)),
                 1..=MOST_PIECES => depth.min(child.depth(&target.triangles)),
                 _ => depth,

@@ -3,6 +3,7 @@
 //! A cell is a cube `H`; its surroundings `H′` are the cube of twice its size around the same centre. It knows the
 //! triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
 
+use super::polygon::{area, clip};
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 use std::sync::OnceLock;
@@ -29,6 +30,8 @@ pub(crate) struct Piece {
 pub(crate) enum Near {
     /// Some of the surface.
     Surface(Vec<Piece>),
+    /// So much of the surface that the cell is divided before it is looked at: the triangles.
+    Many(Vec<u32>),
     /// All of the surroundings are in the solid.
     Inside,
     /// None of them is.
@@ -79,13 +82,31 @@ const SMOOTH: f64 = 0.9;
 const MARGIN: f64 = 1e-3;
 
 impl Cell {
-    /// `pieces`: those of the surface that may be near.
-    pub fn new(centre: Vector3<f64>, half: f64, pieces: &[Piece], distance: &DistanceTo) -> Self {
-        let clipped = clipped(pieces, &centre, half + half);
-        let near = match clipped.is_empty() {
-            false => Near::Surface(clipped),
-            true if depth(distance, &centre) < 0.0 => Near::Outside,
-            true => Near::Inside,
+    /// `around`: what is near a cell that this one is in.
+    pub fn new(centre: Vector3<f64>, half: f64, around: &Near, triangles: &[Triangle], distance: &DistanceTo) -> Self {
+        let reach = 2.0 * half * (1.0 + MARGIN);
+        let clipped = |triangle: u32, corners: &[Vector3<f64>]| {
+            let corners = clip(corners, &centre, reach)?;
+            Some(Piece { triangle, corners })
+        };
+        let pieces: Vec<Piece> = match around {
+            Near::Surface(pieces) => {
+                let own = pieces
+                    .iter()
+                    .filter_map(|piece| clipped(piece.triangle, &piece.corners));
+                own.collect()
+            }
+            Near::Many(numbers) => {
+                let own = |number: &u32| clipped(*number, &triangles[*number as usize].corners);
+                numbers.iter().filter_map(own).collect()
+            }
+            Near::Inside | Near::Outside => return Self::with(centre, half, around.clone()),
+        };
+        let near = match pieces.len() {
+            0 if depth(distance, &centre) < 0.0 => Near::Outside,
+            0 => Near::Inside,
+            1..=MOST_PIECES => Near::Surface(pieces),
+            _ => Near::Many(pieces.iter().map(|piece| piece.triangle).collect()),
         };
         Self::with(centre, half, near)
     }
@@ -98,6 +119,15 @@ impl Cell {
             known: OnceLock::new(),
             deepest: OnceLock::new(),
             children: OnceLock::new(),
+        }
+    }
+
+    /// How many triangles are near.
+    pub fn count(&self) -> usize {
+        match &self.near {
+            Near::Surface(pieces) => pieces.len(),
+            Near::Many(numbers) => numbers.len(),
+            Near::Inside | Near::Outside => 0,
         }
     }
 
@@ -122,20 +152,21 @@ impl Cell {
     }
 
     /// One of them. `None` if there are as many cells as there may be.
-    pub fn child(&self, octant: usize, distance: &DistanceTo, left: &AtomicUsize) -> Option<&Self> {
+    pub fn child(
+        &self,
+        octant: usize,
+        triangles: &[Triangle],
+        distance: &DistanceTo,
+        left: &AtomicUsize,
+    ) -> Option<&Self> {
         let children = self.children.get_or_init(Box::default);
         let child = &children[octant];
         if child.get().is_none() {
-            let take = |left: usize| left.checked_sub(1 + self.pieces().len() / 16);
+            let take = |left: usize| left.checked_sub(1 + self.pieces().len() / 8);
             left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
         }
-        Some(child.get_or_init(|| {
-            let (centre, half) = (self.centre_of_child(octant), 0.5 * self.half);
-            match &self.near {
-                Near::Surface(pieces) => Self::new(centre, half, pieces, distance),
-                near => Self::with(centre, half, near.clone()),
-            }
-        }))
+        let (centre, half) = (self.centre_of_child(octant), 0.5 * self.half);
+        Some(child.get_or_init(|| Self::new(centre, half, &self.near, triangles, distance)))
     }
 
     /// Directions to try: the mean normal, and those of the triangles.
@@ -255,14 +286,6 @@ fn highest(points: &[Vector3<f64>], direction: &Vector3<f64>) -> (f64, usize) {
     best
 }
 
-fn area(corners: &[Vector3<f64>]) -> f64 {
-    let fan = corners.windows(2).skip(1);
-    let twice: Vector3<f64> = fan
-        .map(|pair| (pair[0] - corners[0]).cross(&(pair[1] - corners[0])))
-        .sum();
-    0.5 * twice.norm()
-}
-
 /// Whether no triangle faces down, and one faces up: then what is just above all of them is outside.
 fn faces_up(pieces: &[Piece], triangles: &[Triangle], normal: &Vector3<f64>) -> bool {
     let cosines = || {
@@ -271,57 +294,6 @@ fn faces_up(pieces: &[Piece], triangles: &[Triangle], normal: &Vector3<f64>) -> 
             .map(|piece| triangles[piece.triangle as usize].normal.dot(normal))
     };
     cosines().all(|cosine| cosine >= 0.0) && cosines().any(|cosine| cosine > 0.01)
-}
-
-/// The parts of pieces in surroundings, and a little beyond.
-fn clipped(pieces: &[Piece], centre: &Vector3<f64>, half: f64) -> Vec<Piece> {
-    let within = |piece: &Piece| {
-        let corners = clip(&piece.corners, centre, half * (1.0 + MARGIN))?;
-        Some(Piece {
-            triangle: piece.triangle,
-            corners,
-        })
-    };
-    pieces.iter().filter_map(within).collect()
-}
-
-/// A convex polygon within a cube; `None` if nothing is left.
-fn clip(corners: &[Vector3<f64>], centre: &Vector3<f64>, half: f64) -> Option<SmallVec<[Vector3<f64>; 4]>> {
-    let (mut all, mut some) = (true, true);
-    for k in 0..3 {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for corner in corners {
-            low = low.min(corner[k] - centre[k]);
-            high = high.max(corner[k] - centre[k]);
-        }
-        some &= low <= half && high >= -half;
-        all &= low >= -half && high <= half;
-    }
-    if all || !some {
-        return some.then(|| corners.iter().copied().collect());
-    }
-    let mut polygon: SmallVec<[Vector3<f64>; 8]> = corners.iter().copied().collect();
-    for k in 0..3 {
-        for side in [1.0, -1.0] {
-            let above = |p: &Vector3<f64>| side * (p[k] - centre[k]) - half;
-            let mut kept = SmallVec::new();
-            for (i, a) in polygon.iter().enumerate() {
-                let b = &polygon[(i + 1) % polygon.len()];
-                let (u, v) = (above(a), above(b));
-                if u <= 0.0 {
-                    kept.push(*a);
-                }
-                if (u < 0.0 && v > 0.0) || (u > 0.0 && v < 0.0) {
-                    kept.push(a + (b - a) * (u / (u - v)));
-                }
-            }
-            polygon = kept;
-            if polygon.is_empty() {
-                return None;
-            }
-        }
-    }
-    Some(polygon.into_iter().collect())
 }
 
 /// How deep a point is in the solid; negative outside.

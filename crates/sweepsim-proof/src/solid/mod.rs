@@ -2,13 +2,13 @@
 
 mod cell;
 mod faults;
+mod polygon;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Piece, Triangle, Way, is_outside};
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Triangle, Way, is_outside};
 
 pub use faults::Fault;
 
 use nalgebra::Vector3;
-use smallvec::SmallVec;
 use std::sync::atomic::AtomicUsize;
 use sweepsim_dexel::{DistanceTo, MeshError, TriangleSoup};
 
@@ -47,18 +47,11 @@ impl Target {
                 triangles.push(Triangle { corners, normal });
             }
         }
-        let pieces: Vec<Piece> = triangles
-            .iter()
-            .enumerate()
-            .map(|(number, triangle)| Piece {
-                triangle: number as u32,
-                corners: SmallVec::from_slice(&triangle.corners),
-            })
-            .collect();
+        let all = Near::Many((0..triangles.len() as u32).collect());
         let half = 0.5 * (high - low).max() * (1.0 + 1e-9);
         let size = low.amax().max(high.amax());
         Ok(Self {
-            root: Cell::new(0.5 * (low + high), half, &pieces, &distance),
+            root: Cell::new(0.5 * (low + high), half, &all, &triangles, &distance),
             triangles,
             distance,
             cells_left: AtomicUsize::new(MOST_CELLS),
