@@ -12,7 +12,6 @@ mod solid;
 mod statement;
 mod tool;
 
-pub use motion::Placement;
 pub use search::{Cutter, Enclosed, Limits, deepest};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};

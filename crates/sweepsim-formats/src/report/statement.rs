@@ -10,7 +10,8 @@ pub struct Statement {
     pub about: String,
     /// The limit.
     pub limit: f64,
-    /// The largest depth lies between these: the first is attained at the witness, the second is proven.
+    /// The largest depth lies between these: the first is attained at the witness, the second is proven: the
+    /// largest number there is if nothing is known.
     pub enclosure: [f64; 2],
     /// Whether the statement holds.
     pub state: StatementState,

@@ -85,7 +85,7 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
     }
     let witness = found.deepest.as_ref();
     statement.witness = witness.map(|(path, witness)| described(job, texts, *path, witness));
-    statement.open_count = found.open.len();
+    statement.open_count = found.open_count;
     statement.open = found
         .open
         .iter()

@@ -7,6 +7,7 @@ use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
 use nalgebra::Vector3;
 use std::cmp::Ordering;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// What is wanted of a search.
@@ -31,16 +32,31 @@ const MOST_TURNING: usize = 4;
 /// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
 const FINE: f64 = 16.0;
 
+/// As many open places are described, of each part of the work.
+const MOST_OPEN: usize = 100;
+
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Found {
     pub deepest: Option<Witness>,
     /// No point is deeper.
     pub bound: f64,
+    /// Where it is not known better, the deepest first: at most [`MOST_OPEN`].
     pub open: Vec<OpenBox>,
+    /// The bounds of all these.
+    pub open_depths: Vec<f64>,
     /// The deepest place of each move that goes beyond the limit, as far as they were seen.
     pub moves: BTreeMap<usize, Witness>,
     pub pairs: usize,
+}
+
+/// Keeps the deeper one of two places of a move.
+pub(super) fn keep_deeper<K: Ord>(moves: &mut BTreeMap<K, Witness>, key: K, witness: Witness) {
+    match moves.entry(key) {
+        Entry::Vacant(place) => drop(place.insert(witness)),
+        Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
+        Entry::Occupied(_) => {}
+    }
 }
 
 /// When: some stretches, or a part of one.
@@ -145,7 +161,7 @@ impl<'a> Search<'a> {
         self.found.bound = self.found.bound.max(depth + self.wanted.allowance);
     }
 
-    /// The deepest point known.
+    /// How deep the deepest point known is.
     fn known(&self) -> f64 {
         let own = self.found.deepest.as_ref().map_or(0.0, |witness| witness.depth);
         own.max(self.wanted.known)
@@ -343,14 +359,7 @@ impl<'a> Search<'a> {
             self.found.deepest = Some(witness.clone());
         }
         if depth > self.wanted.limit {
-            let of_move = self
-                .found
-                .moves
-                .entry(stretch.number)
-                .or_insert_with(|| witness.clone());
-            if depth > of_move.depth {
-                *of_move = witness;
-            }
+            keep_deeper(&mut self.found.moves, stretch.number, witness);
         }
     }
 
@@ -361,13 +370,17 @@ impl<'a> Search<'a> {
             return self.settle(depth);
         }
         self.settle(depth);
+        self.found.open_depths.push(depth + self.wanted.allowance);
+        if self.found.open.len() == MOST_OPEN {
+            return;
+        }
         let (first, last) = match pair.when {
             When::Node(number) => {
                 let node = &self.run.nodes[number];
                 let [a, b] = [node.first, node.last - 1].map(|k| &self.run.stretches[k]);
                 ((a.number, a.time(0.0)), (b.number, b.time(1.0)))
             }
-            When::Part { stretch, times, .. } => {
+            When::Part { stretch, times } => {
                 let stretch = &self.run.stretches[stretch];
                 let [from, to] = times.map(|t| (stretch.number, stretch.time(t)));
                 (from, to)

@@ -1,11 +1,12 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
-use super::deepest::{Found, SHARE, Search, Wanted};
+use super::deepest::{Found, SHARE, Search, Wanted, keep_deeper};
 use crate::motion::{Run, Stretch};
 use crate::solid::Target;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_motion::{OtherCourses, Path, Segment};
@@ -40,8 +41,10 @@ pub struct Enclosed {
     pub deepest: Option<(usize, Witness)>,
     /// No point goes deeper.
     pub bound: f64,
-    /// Where that is not known any better than what is wanted; with the path.
+    /// Where that is not known any better than what is wanted, with the path: some of these places.
     pub open: Vec<(usize, OpenBox)>,
+    /// How many they are.
+    pub open_count: usize,
     /// The moves that were seen to go deeper than the limit, each with its deepest known place; with the path.
     pub moves: Vec<(usize, Witness)>,
     /// Pairs of a cell and a time that were looked at.
@@ -72,19 +75,35 @@ pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &d
     let each = (limits.pairs / parts.len().max(1)).max(LEAST_PAIRS);
     // A first look everywhere: what is found then need not be found again.
     let first = look_everywhere(target, cutters, (&parts, limits), (FIRST_LOOK, 0.0), monitor)?;
-    let known = first.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
-    let mut all = if first.open.is_empty() {
-        first
+    let witnesses = first.iter().filter_map(|(_, found)| found.deepest.as_ref());
+    let known = witnesses.map(|witness| witness.depth).fold(0.0, f64::max);
+    let (mut all, mut open) = (Enclosed::default(), Vec::new());
+    if first.iter().all(|(_, found)| found.open.is_empty()) {
+        all.join(first, &mut open);
     } else {
-        look_everywhere(target, cutters, (&parts, limits), (each, known), monitor)?.with_known(first)
-    };
+        let second = look_everywhere(target, cutters, (&parts, limits), (each, known), monitor)?;
+        all.join(second, &mut open);
+        // Only what it has seen: its bounds and open places are not as good.
+        let seen = first.into_iter().map(|(path, found)| {
+            let Found {
+                deepest, moves, pairs, ..
+            } = found;
+            let seen = Found {
+                deepest,
+                moves,
+                pairs,
+                ..Found::default()
+            };
+            (path, seen)
+        });
+        all.join(seen, &mut Vec::new());
+    }
     // What is left open elsewhere, but no deeper than what is known, is settled.
     let known = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth);
     let settled = known + limits.width.max(known * SHARE);
     all.open.retain(|(_, open)| open.depth > settled);
-    all.bound = all
-        .bound
-        .max(all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth));
+    all.open_count = open.iter().filter(|depth| **depth > settled).count();
+    all.bound = all.bound.max(known);
     Some(all)
 }
 
@@ -95,7 +114,7 @@ fn look_everywhere(
     (parts, limits): (&[(usize, Range<usize>)], &Limits),
     asked: (usize, f64),
     monitor: &dyn Monitor,
-) -> Option<Enclosed> {
+) -> Option<Vec<(usize, Found)>> {
     let (done, total) = (AtomicUsize::new(0), parts.len());
     let look = |(number, moves): &(usize, Range<usize>)| {
         if monitor.cancelled() {
@@ -105,48 +124,32 @@ fn look_everywhere(
         monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Some((*number, found))
     };
-    let found: Option<Vec<_>> = parts.par_iter().with_max_len(1).map(look).collect();
-    let mut all = Enclosed::default();
-    for (number, found) in found? {
-        all.bound = all.bound.max(found.bound);
-        all.pairs += found.pairs;
-        all.open.extend(found.open.into_iter().map(|open| (number, open)));
-        all.moves
-            .extend(found.moves.into_values().map(|witness| (number, witness)));
-        if let Some(witness) = found.deepest {
-            all.take(number, witness);
-        }
-    }
-    Some(all)
+    parts.par_iter().with_max_len(1).map(look).collect()
 }
 
 impl Enclosed {
-    fn take(&mut self, path: usize, witness: Witness) {
-        if self
-            .deepest
-            .as_ref()
-            .is_none_or(|(_, known)| witness.depth > known.depth)
-        {
-            self.deepest = Some((path, witness));
-        }
-    }
-
-    /// With the places that a first look has found.
-    fn with_known(mut self, first: Self) -> Self {
-        self.pairs += first.pairs;
-        if let Some((path, witness)) = first.deepest {
-            self.take(path, witness);
-        }
-        for (path, witness) in first.moves {
-            let same = |(own, known): &&mut (usize, Witness)| *own == path && known.number == witness.number;
-            match self.moves.iter_mut().find(same) {
-                Some((_, known)) if known.depth >= witness.depth => {}
-                Some((_, known)) => *known = witness,
-                None => self.moves.push((path, witness)),
+    /// With what was found in parts of the work, of these paths.
+    fn join(&mut self, parts: impl IntoIterator<Item = (usize, Found)>, open: &mut Vec<f64>) {
+        let known = std::mem::take(&mut self.moves).into_iter();
+        let mut moves: BTreeMap<_, _> = known.map(|(path, own)| ((path, own.number), own)).collect();
+        for (path, found) in parts {
+            self.bound = self.bound.max(found.bound);
+            self.pairs += found.pairs;
+            self.open.extend(found.open.into_iter().map(|open| (path, open)));
+            open.extend(found.open_depths);
+            for witness in found.moves.into_values() {
+                keep_deeper(&mut moves, (path, witness.number), witness);
+            }
+            if let Some(witness) = found.deepest
+                && self
+                    .deepest
+                    .as_ref()
+                    .is_none_or(|(_, known)| witness.depth > known.depth)
+            {
+                self.deepest = Some((path, witness));
             }
         }
-        self.moves.sort_by_key(|(path, witness)| (*path, witness.number));
-        self
+        self.moves = moves.into_iter().map(|((path, _), witness)| (path, witness)).collect();
     }
 }
 
@@ -181,19 +184,17 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
     };
     let mut all = Found::default();
     for solid in cutter.solids {
-        // What only bounds the tool has no witness: more than a first look would not end.
-        let pairs = if solid.is_exact() { pairs } else { pairs.min(FIRST_LOOK) };
+        // What is much larger than the tool may never come to an end.
+        let pairs = if solid.is_loose() { pairs.min(FIRST_LOOK) } else { pairs };
         let wanted = Wanted { pairs, ..wanted };
         let run = Run::new(solid, &stretches);
         let found = Search::new(target, &run, wanted).run();
         all.bound = all.bound.max(found.bound);
         all.pairs += found.pairs;
         all.open.extend(found.open);
+        all.open_depths.extend(found.open_depths);
         for (number, witness) in found.moves {
-            let known = all.moves.entry(number).or_insert_with(|| witness.clone());
-            if witness.depth > known.depth {
-                *known = witness;
-            }
+            keep_deeper(&mut all.moves, number, witness);
         }
         if let Some(witness) = found.deepest
             && all.deepest.as_ref().is_none_or(|known| witness.depth > known.depth)

@@ -243,9 +243,13 @@ impl Cell {
 
     fn way_above(&self, normal: Vector3<f64>, triangles: &[Triangle], corners: &[Vector3<f64>]) -> Way {
         let top = highest(corners, &normal).0;
-        let above = || self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
-        let out =
-            faces_up(self.pieces(), triangles, &normal) || is_outside(&above(), self.pieces(), triangles) == Some(true);
+        let is_out = || {
+            let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
+            // Beyond the surroundings, there may be triangles that are not known here.
+            let is_near = (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN);
+            is_near && is_outside(&above, self.pieces(), triangles) == Some(true)
+        };
+        let out = faces_up(self.pieces(), triangles, &normal) || is_out();
         Way { normal, top, out }
     }
 

@@ -24,7 +24,7 @@ pub struct Target {
     pub(crate) size: f64,
 }
 
-/// At most as many cells, of about 300 bytes each.
+/// At most as many cells, of some hundred bytes each; of one with pieces, every eight count as another.
 const MOST_CELLS: usize = 2_000_000;
 
 impl Target {

@@ -7,11 +7,13 @@ use nalgebra::Vector3;
 /// All that a proof needs of it is the [support function](Self::support): how far it reaches in a direction.
 #[derive(Clone, Debug, Default)]
 pub struct Convex {
-    /// Points `(ρ, ζ)`, `ρ ≥ 0`.
+    /// Points `(ρ, ζ)`, `ρ ≥ 0`: those of their own hull, counter-clockwise.
     pub(super) corners: Vec<[f64; 2]>,
     pub(super) arcs: Vec<ConvexArc>,
     /// Whether every point is one of the tool, so that a point of it is a witness.
     pub(super) exact: bool,
+    /// Whether it bounds a tool whose shape is not known well.
+    pub(super) loose: bool,
 }
 
 /// An arc with the material on the side of its centre, of at most 90°.
@@ -36,6 +38,12 @@ impl Convex {
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.exact
+    }
+
+    /// Whether it may be much larger than the tool: the hull of control points.
+    #[must_use]
+    pub fn is_loose(&self) -> bool {
+        self.loose
     }
 
     /// The largest value of `⟨direction, x⟩` over the solid whose axis is a unit vector and whose tip is the origin.
@@ -90,35 +98,20 @@ impl Convex {
         best
     }
 
-    /// Whether a point at `(ρ, ζ)` belongs to the solid, with certainty but for rounding.
+    /// Whether a point at `(ρ, ζ)` belongs to the solid.
+    ///
+    /// A point outside of a convex set is beyond it in the direction from the nearest of its points: across an edge, or
+    /// away from a corner or the centre of an arc.
     #[must_use]
     pub fn contains(&self, point: [f64; 2]) -> bool {
-        // The hull is the intersection of half-planes; those of the normals at corners and of arcs towards the point
-        // are enough to look at, by bisection of the direction that separates best.
-        let worst = |angle: f64| {
-            let direction = [angle.cos(), angle.sin()];
-            dot(direction, point) - self.meridian_support(direction).0
-        };
-        let steps = 64;
-        let at = |k: f64| -std::f64::consts::FRAC_PI_2 + std::f64::consts::PI * k / f64::from(steps);
-        let mut best = (f64::NEG_INFINITY, 0.0);
-        for k in 0..=steps {
-            let value = worst(at(f64::from(k)));
-            if value > best.0 {
-                best = (value, f64::from(k));
-            }
-        }
-        // The distance from a convex set has one maximum over directions that separate.
-        let (mut low, mut high) = ((best.1 - 1.0).max(0.0), (best.1 + 1.0).min(f64::from(steps)));
-        for _ in 0..40 {
-            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-            if worst(at(a)) < worst(at(b)) {
-                low = a;
-            } else {
-                high = b;
-            }
-        }
-        best.0.max(worst(at(0.5 * (low + high)))) <= 0.0
+        let from = |other: [f64; 2]| [point[0] - other[0], point[1] - other[1]];
+        let around = self.corners.iter().skip(1).chain(self.corners.first());
+        // The corners are in order: the outside is on the right.
+        let edges = self.corners.iter().zip(around).map(|(a, b)| [b[1] - a[1], a[0] - b[0]]);
+        let corners = self.corners.iter().map(|corner| from(*corner));
+        let arcs = self.arcs.iter().map(|arc| from(arc.centre));
+        let mut directions = edges.chain(corners).chain(arcs).filter(|direction| direction[0] >= 0.0);
+        directions.all(|direction| dot(direction, point) <= self.meridian_support(direction).0)
     }
 
     /// The largest distance of a point from the tip.
@@ -145,5 +138,32 @@ impl Convex {
             -self.meridian_support([0.0, -1.0]).0,
             self.meridian_support([0.0, 1.0]).0,
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tool::cover;
+    use sweepsim_motion::Tool;
+
+    #[test]
+    fn points_belong_to_a_bull_nose_by_its_equations() {
+        let (radius, corner, length) = (3.0, 1.0, 10.0);
+        let tool = Tool::bull(radius, corner, length).expect("a tool");
+        let [solid] = &cover(&tool, 1e-3)[..] else {
+            panic!("a bull nose is convex")
+        };
+        assert!(solid.is_exact());
+        let mut inside = 0;
+        for i in 0..80 {
+            for j in 0..120 {
+                let (rho, zeta) = (f64::from(i) * 0.0501, f64::from(j) * 0.1003 - 1.0);
+                let off = (rho - (radius - corner)).max(0.0).hypot((corner - zeta).max(0.0));
+                let own = rho <= radius && (0.0..=length).contains(&zeta) && off <= corner;
+                assert_eq!(solid.contains([rho, zeta]), own, "({rho}, {zeta})");
+                inside += i32::from(own);
+            }
+        }
+        assert!((5000..6500).contains(&inside), "{inside}");
     }
 }

@@ -73,6 +73,7 @@ impl Stretch {
             corners: vec![from],
             arcs: Vec::new(),
             exact: true,
+            loose: false,
         };
         Self { convex, turned: 0.0 }
     }
@@ -122,7 +123,7 @@ impl Stretch {
     }
 }
 
-/// The corners of the hull of points (Andrew's monotone chain).
+/// The corners of the hull of points, counter-clockwise (Andrew's monotone chain).
 fn extreme(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
@@ -145,9 +146,11 @@ fn extreme(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         chain
     };
     let mut hull = half(&mut points.iter().copied());
-    hull.extend(half(&mut points.iter().rev().copied()));
-    hull.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    hull.dedup();
+    let mut above = half(&mut points.iter().rev().copied());
+    // Both begin and end at the same two points.
+    hull.pop();
+    above.pop();
+    hull.extend(above);
     hull
 }
 
@@ -243,5 +246,6 @@ fn around_patches(tool: &Tool) -> Convex {
         corners: extreme(corners),
         arcs: Vec::new(),
         exact: false,
+        loose: true,
     }
 }

@@ -144,3 +144,31 @@ fn so_is_one_that_stands_on_the_floor() {
     assert!((0.048..=0.05).contains(&known) && found.bound >= 0.05);
     assert_eq!(found.moves[0].1.number, 1);
 }
+
+#[test]
+fn threads_do_not_matter() {
+    // A raster that digs into the floor by 0.03 mm, in four parts of the work.
+    let target = slot(-12.0, 12.0, 2.03);
+    let tool = Tool::ball(3.0, 30.0).expect("a tool");
+    let tip = |k: u32| [-35.0 + 70.0 * f64::from(k % 16) / 15.0, -8.0 + f64::from(k / 16), 2.0];
+    let poses = (0..250).map(|k| Pose::new(tip(k), [0.0, 0.0, 1.0]).expect("a pose"));
+    let path = Path::new(poses.collect()).expect("a path");
+    let solids = cover(&tool, 1e-4);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
+        let cutter = Cutter {
+            solids: &solids,
+            path: &path,
+            others: None,
+        };
+        pool.install(|| deepest(&target, &[cutter], &LIMITS, &()))
+            .expect("not cancelled")
+    };
+    let one = run(1);
+    // Only moves that the search came across.
+    assert!(one.moves.len() > 20, "{}", one.moves.len());
+    assert_eq!(format!("{one:?}"), format!("{:?}", run(4)));
+}
