@@ -50,12 +50,41 @@ pub(super) struct Found {
     pub pairs: usize,
 }
 
-/// Keeps the deeper one of two places of a move.
-pub(super) fn keep_deeper<K: Ord>(moves: &mut BTreeMap<K, Witness>, key: K, witness: Witness) {
-    match moves.entry(key) {
-        Entry::Vacant(place) => drop(place.insert(witness)),
-        Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
-        Entry::Occupied(_) => {}
+impl Found {
+    /// With what was found of another solid of the same cutter.
+    pub fn beside(&mut self, other: Self) {
+        self.bound = self.bound.max(other.bound);
+        self.open.extend(other.open);
+        self.open_depths.extend(other.open_depths);
+        self.take(other.deepest, other.moves, other.pairs);
+    }
+
+    /// What is known after an earlier look at the same.
+    pub fn after(mut self, earlier: Self) -> Self {
+        if earlier.pairs > 0 {
+            self.bound = self.bound.min(earlier.bound);
+        }
+        self.take(earlier.deepest, earlier.moves, earlier.pairs);
+        self
+    }
+
+    fn take(&mut self, deepest: Option<Witness>, moves: BTreeMap<usize, Witness>, pairs: usize) {
+        self.pairs += pairs;
+        for witness in moves.into_values() {
+            self.take_move(witness);
+        }
+        let depth = |witness: &Option<Witness>| witness.as_ref().map_or(0.0, |witness| witness.depth);
+        if depth(&deepest) > depth(&self.deepest) {
+            self.deepest = deepest;
+        }
+    }
+
+    fn take_move(&mut self, witness: Witness) {
+        match self.moves.entry(witness.number) {
+            Entry::Vacant(place) => drop(place.insert(witness)),
+            Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
+            Entry::Occupied(_) => {}
+        }
     }
 }
 
@@ -218,6 +247,8 @@ impl<'a> Search<'a> {
             normal: Vector3::z(),
             place: None,
         };
+        // Whether shorter times would do, as the path would bend less.
+        let mut bends = false;
         if few && pieces <= MOST_PIECES {
             let above = Above {
                 during,
@@ -228,12 +259,14 @@ impl<'a> Search<'a> {
                 depth.place = Some(cell.centre);
             } else {
                 let own = above.depth(self.enough());
+                bends = own.value - during.bend <= self.enough();
                 depth = Depth {
                     value: own.value.min(depth.value),
                     ..own
                 };
             }
-            if depth.value > self.enough() && (pieces == 0 || cell.half < FINE * self.wanted.width) {
+            let little_known = depth.value > 2.0 * cell.half || cell.half < FINE * self.wanted.width;
+            if depth.value > self.enough() && (pieces == 0 || little_known) {
                 depth.value = depth.value.min(cell.deepest(&self.target.distance));
             }
             if depth.value > self.enough() {
@@ -245,20 +278,22 @@ impl<'a> Search<'a> {
         }
         if depth.value <= self.enough() {
             self.settle(depth.value);
-        } else if cell.half < 0.05 * self.wanted.width || !self.divide(cell, when, (depth.value, during.bend)) {
+        } else if cell.half < 0.05 * self.wanted.width
+            || !self.divide(cell, when, (depth.value, bends || during.bend > cell.half))
+        {
             self.leave(pair, depth.value);
         }
     }
 
     /// Divides a pair: the time if the solid moves farther in it than the cell is wide, else the cell.
-    fn divide(&mut self, cell: &'a Cell, when: When, (depth, bend): (f64, f64)) -> bool {
-        let bends = bend > 0.25 * self.wanted.width;
+    fn divide(&mut self, cell: &'a Cell, when: When, (depth, bends): (f64, bool)) -> bool {
         let (stretch, times) = match when {
             When::Node(number) => {
                 let node = self.run.nodes[number];
                 match node.halves {
                     Some(halves) => {
-                        if bends || node.tips.size() > 2.0 * cell.half {
+                        let turns = node.axis.is_none() && node.last - node.first > MOST_TURNING;
+                        if bends || turns || node.tips.size() > 2.0 * cell.half {
                             halves.iter().for_each(|half| self.push(depth, cell, When::Node(*half)));
                             return true;
                         }
@@ -270,8 +305,10 @@ impl<'a> Search<'a> {
             When::Part { stretch, times } => (stretch, times),
         };
         let duration = times[1] - times[0];
-        let moves = self.run.stretches[stretch].travel(self.run.reach, duration) > 2.0 * cell.half;
         let middle = 0.5 * (times[0] + times[1]);
+        let own = &self.run.stretches[stretch];
+        let far = (own.at(middle).tip - cell.centre).norm() + 3_f64.sqrt() * cell.half;
+        let moves = own.travel(far.min(self.run.reach), duration) > 2.0 * cell.half;
         // Where the solid is, shorter times do not help.
         let is_there = || {
             let placement = self.run.stretches[stretch].at(middle);
@@ -279,7 +316,7 @@ impl<'a> Search<'a> {
             let along = off.dot(&placement.axis);
             self.run.solid.contains([(off - placement.axis * along).norm(), along])
         };
-        if !(moves || bends) || duration < 1e-9 || is_there() {
+        if !(bends || moves && !is_there()) || duration < 1e-9 {
             return self.divide_cell(cell, when, depth);
         }
         for times in [[times[0], middle], [middle, times[1]]] {
@@ -359,7 +396,7 @@ impl<'a> Search<'a> {
             self.found.deepest = Some(witness.clone());
         }
         if depth > self.wanted.limit {
-            keep_deeper(&mut self.found.moves, stretch.number, witness);
+            self.found.take_move(witness);
         }
     }
 

@@ -1,12 +1,11 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
-use super::deepest::{Found, SHARE, Search, Wanted, keep_deeper};
+use super::deepest::{Found, SHARE, Search, Wanted};
 use crate::motion::{Run, Stretch};
 use crate::solid::Target;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_motion::{OtherCourses, Path, Segment};
@@ -55,6 +54,8 @@ pub struct Enclosed {
 const TOGETHER: usize = 64;
 /// At first, every part of the work looks at so many pairs.
 const FIRST_LOOK: usize = 512;
+/// How deep cutters go that go too deep need not be known better than this, in parts of it.
+const ROUGHLY: f64 = 0.25;
 /// Every part of the work may look at so many pairs.
 const LEAST_PAIRS: usize = 10_000;
 /// Coordinates of this size are exact to 1: some thousand roundings, more than any bound here has.
@@ -72,49 +73,68 @@ pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &d
             (0..moves).step_by(TOGETHER).map(part)
         })
         .collect();
-    let each = (limits.pairs / parts.len().max(1)).max(LEAST_PAIRS);
-    // A first look everywhere: what is found then need not be found again.
-    let first = look_everywhere(target, cutters, (&parts, limits), (FIRST_LOOK, 0.0), monitor)?;
-    let witnesses = first.iter().filter_map(|(_, found)| found.deepest.as_ref());
-    let known = witnesses.map(|witness| witness.depth).fold(0.0, f64::max);
-    let (mut all, mut open) = (Enclosed::default(), Vec::new());
-    if first.iter().all(|(_, found)| found.open.is_empty()) {
-        all.join(first, &mut open);
-    } else {
-        let second = look_everywhere(target, cutters, (&parts, limits), (each, known), monitor)?;
-        all.join(second, &mut open);
-        // Only what it has seen: its bounds and open places are not as good.
-        let seen = first.into_iter().map(|(path, found)| {
-            let Found {
-                deepest, moves, pairs, ..
-            } = found;
-            let seen = Found {
-                deepest,
-                moves,
-                pairs,
-                ..Found::default()
-            };
-            (path, seen)
-        });
-        all.join(seen, &mut Vec::new());
+    let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
+    let mut open: Vec<usize> = (0..parts.len()).collect();
+    // A first look everywhere: what it finds need not be found again. Then what is left, as well as is wanted; at last,
+    // only whether it is within the limit.
+    for look in 0..3 {
+        let witnesses = found.iter().filter_map(|found| found.deepest.as_ref());
+        let known = witnesses.map(|witness| witness.depth).fold(0.0, f64::max);
+        let enough = if known < limits.depth {
+            limits.depth - known
+        } else {
+            known * ROUGHLY
+        };
+        let asked = Asked {
+            pairs: match look {
+                0 => FIRST_LOOK,
+                _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
+            },
+            width: if look < 2 {
+                limits.width
+            } else {
+                limits.width.max(enough)
+            },
+            known,
+        };
+        let own: Vec<_> = open.iter().map(|number| parts[*number].clone()).collect();
+        let again = look_at(target, cutters, (&own, limits), asked, monitor)?;
+        for (number, again) in open.iter().zip(again) {
+            found[*number] = again.after(std::mem::take(&mut found[*number]));
+        }
+        open.retain(|number| !found[*number].open.is_empty());
+    }
+    let mut all = Enclosed::default();
+    let mut depths = Vec::new();
+    for ((path, _), found) in parts.into_iter().zip(found) {
+        all.join(path, found, &mut depths);
     }
     // What is left open elsewhere, but no deeper than what is known, is settled.
     let known = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth);
     let settled = known + limits.width.max(known * SHARE);
     all.open.retain(|(_, open)| open.depth > settled);
-    all.open_count = open.iter().filter(|depth| **depth > settled).count();
+    all.open_count = depths.iter().filter(|depth| **depth > settled).count();
     all.bound = all.bound.max(known);
     Some(all)
 }
 
-/// A search in each of the parts: for so many pairs, when something is known to be so deep.
-fn look_everywhere(
+/// What is asked of a look.
+#[derive(Clone, Copy)]
+struct Asked {
+    pairs: usize,
+    width: f64,
+    /// Some point is known to be so deep.
+    known: f64,
+}
+
+/// A search in each of some parts.
+fn look_at(
     target: &Target,
     cutters: &[Cutter],
     (parts, limits): (&[(usize, Range<usize>)], &Limits),
-    asked: (usize, f64),
+    asked: Asked,
     monitor: &dyn Monitor,
-) -> Option<Vec<(usize, Found)>> {
+) -> Option<Vec<Found>> {
     let (done, total) = (AtomicUsize::new(0), parts.len());
     let look = |(number, moves): &(usize, Range<usize>)| {
         if monitor.cancelled() {
@@ -122,39 +142,33 @@ fn look_everywhere(
         }
         let found = look(target, &cutters[*number], moves.clone(), limits, asked);
         monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
-        Some((*number, found))
+        Some(found)
     };
     parts.par_iter().with_max_len(1).map(look).collect()
 }
 
 impl Enclosed {
-    /// With what was found in parts of the work, of these paths.
-    fn join(&mut self, parts: impl IntoIterator<Item = (usize, Found)>, open: &mut Vec<f64>) {
-        let known = std::mem::take(&mut self.moves).into_iter();
-        let mut moves: BTreeMap<_, _> = known.map(|(path, own)| ((path, own.number), own)).collect();
-        for (path, found) in parts {
-            self.bound = self.bound.max(found.bound);
-            self.pairs += found.pairs;
-            self.open.extend(found.open.into_iter().map(|open| (path, open)));
-            open.extend(found.open_depths);
-            for witness in found.moves.into_values() {
-                keep_deeper(&mut moves, (path, witness.number), witness);
-            }
-            if let Some(witness) = found.deepest
-                && self
-                    .deepest
-                    .as_ref()
-                    .is_none_or(|(_, known)| witness.depth > known.depth)
-            {
-                self.deepest = Some((path, witness));
-            }
+    /// With what was found in a part of the work, of this path.
+    fn join(&mut self, path: usize, found: Found, open: &mut Vec<f64>) {
+        self.bound = self.bound.max(found.bound);
+        self.pairs += found.pairs;
+        self.open.extend(found.open.into_iter().map(|open| (path, open)));
+        open.extend(found.open_depths);
+        self.moves
+            .extend(found.moves.into_values().map(|witness| (path, witness)));
+        if let Some(witness) = found.deepest
+            && self
+                .deepest
+                .as_ref()
+                .is_none_or(|(_, known)| witness.depth > known.depth)
+        {
+            self.deepest = Some((path, witness));
         }
-        self.moves = moves.into_iter().map(|((path, _), witness)| (path, witness)).collect();
     }
 }
 
 /// Some moves of a cutter.
-fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Found {
+fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, asked: Asked) -> Found {
     let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
     let deviation = 1e-3 * limits.width;
     let mut stretches = Vec::with_capacity(moves.len());
@@ -177,30 +191,21 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
     let size = size.fold(target.size, f64::max);
     let wanted = Wanted {
         limit: limits.depth,
-        width: limits.width,
+        width: asked.width,
         allowance: deviation + ROUNDING * (size + reach),
-        pairs,
-        known,
+        pairs: asked.pairs,
+        known: asked.known,
     };
     let mut all = Found::default();
     for solid in cutter.solids {
         // What is much larger than the tool may never come to an end.
-        let pairs = if solid.is_loose() { pairs.min(FIRST_LOOK) } else { pairs };
-        let wanted = Wanted { pairs, ..wanted };
+        let mut wanted = wanted;
+        if solid.is_loose() {
+            wanted.pairs = wanted.pairs.min(FIRST_LOOK);
+        }
         let run = Run::new(solid, &stretches);
         let found = Search::new(target, &run, wanted).run();
-        all.bound = all.bound.max(found.bound);
-        all.pairs += found.pairs;
-        all.open.extend(found.open);
-        all.open_depths.extend(found.open_depths);
-        for (number, witness) in found.moves {
-            keep_deeper(&mut all.moves, number, witness);
-        }
-        if let Some(witness) = found.deepest
-            && all.deepest.as_ref().is_none_or(|known| witness.depth > known.depth)
-        {
-            all.deepest = Some(witness);
-        }
+        all.beside(found);
     }
     all
 }

@@ -6,7 +6,7 @@ mod planted;
 
 use crate::support::{Workdir, text};
 use std::fs;
-use sweepsim_formats::{ComparisonReport, Report, ReportedFinding, Verdict};
+use sweepsim_formats::{ComparisonReport, Report, ReportedFinding, StatementState, Verdict};
 
 /// A slot 5 mm deep, in two passes, and a hole.
 const PROGRAM: &str = "G21 G90 G17
@@ -265,6 +265,30 @@ fn the_result_of_a_run_is_a_target() {
     assert!(summary.contains("with material left"), "{summary}");
     let (code, _) = verify("wanted/part", "nowhere/part");
     assert_eq!(code, Some(2));
+}
+
+/// As the README says: arcs in round walls of triangles, and five faults.
+#[test]
+fn the_bracket_is_proven_and_the_faulty_one_refuted() {
+    let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/verify");
+    let folder = Workdir::new("");
+    for (job, code, state) in [
+        ("bracket", 0, StatementState::Proven),
+        ("bracket-faulty", 1, StatementState::Refuted),
+    ] {
+        let file = fixtures.join(job).with_extension("ron");
+        let output = folder.run(&["verify", file.to_str().unwrap(), "--only", "report", "--out", job]);
+        assert_eq!(output.status.code(), Some(code), "{}", text(&output.stdout));
+        let report = fs::read(folder.path(&format!("{job}/report.json"))).unwrap();
+        let report: Report = serde_json::from_slice(&report).unwrap();
+        let [statement] = &report.statements.as_deref().unwrap()[..] else {
+            panic!("{:?}", report.statements)
+        };
+        assert_eq!((statement.state, statement.open_count), (state, 0));
+        // Chords of the round walls are cut by less than the limit.
+        let [least, most] = statement.enclosure;
+        assert!(0.0 < least && least <= most, "{least} {most}");
+    }
 }
 
 /// The shipped faulty bracket with its circle a little narrower or wider: bisection cuts the level arc into parts of
