@@ -1,14 +1,14 @@
 //! Branch and bound over times and cells.
 
 use super::bound::{Above, Depth};
+use super::found::{Found, MOST_OPEN};
 use super::reach::During;
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
 use nalgebra::Vector3;
 use std::cmp::Ordering;
-use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BinaryHeap;
 
 /// What is wanted of a search.
 #[derive(Clone, Copy, Debug)]
@@ -31,62 +31,6 @@ pub(super) const SHARE: f64 = 1.0 / 64.0;
 const MOST_TURNING: usize = 4;
 /// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
 const FINE: f64 = 16.0;
-
-/// As many open places are described, of each part of the work.
-const MOST_OPEN: usize = 100;
-
-/// What was found.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Found {
-    pub deepest: Option<Witness>,
-    /// No point is deeper.
-    pub bound: f64,
-    /// Where it is not known better, the deepest first: at most [`MOST_OPEN`].
-    pub open: Vec<OpenBox>,
-    /// The bounds of all these.
-    pub open_depths: Vec<f64>,
-    /// The deepest place of each move that goes beyond the limit, as far as they were seen.
-    pub moves: BTreeMap<usize, Witness>,
-    pub pairs: usize,
-}
-
-impl Found {
-    /// With what was found of another solid of the same cutter.
-    pub fn beside(&mut self, other: Self) {
-        self.bound = self.bound.max(other.bound);
-        self.open.extend(other.open);
-        self.open_depths.extend(other.open_depths);
-        self.take(other.deepest, other.moves, other.pairs);
-    }
-
-    /// What is known after an earlier look at the same.
-    pub fn after(mut self, earlier: Self) -> Self {
-        if earlier.pairs > 0 {
-            self.bound = self.bound.min(earlier.bound);
-        }
-        self.take(earlier.deepest, earlier.moves, earlier.pairs);
-        self
-    }
-
-    fn take(&mut self, deepest: Option<Witness>, moves: BTreeMap<usize, Witness>, pairs: usize) {
-        self.pairs += pairs;
-        for witness in moves.into_values() {
-            self.take_move(witness);
-        }
-        let depth = |witness: &Option<Witness>| witness.as_ref().map_or(0.0, |witness| witness.depth);
-        if depth(&deepest) > depth(&self.deepest) {
-            self.deepest = deepest;
-        }
-    }
-
-    fn take_move(&mut self, witness: Witness) {
-        match self.moves.entry(witness.number) {
-            Entry::Vacant(place) => drop(place.insert(witness)),
-            Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
-            Entry::Occupied(_) => {}
-        }
-    }
-}
 
 /// When: some stretches, or a part of one.
 #[derive(Clone, Copy)]

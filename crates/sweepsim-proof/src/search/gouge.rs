@@ -1,6 +1,7 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
-use super::deepest::{Found, SHARE, Search, Wanted};
+use super::deepest::{SHARE, Search, Wanted};
+use super::found::Found;
 use crate::motion::{Run, Stretch};
 use crate::solid::Target;
 use crate::statement::{OpenBox, Witness};

@@ -2,6 +2,7 @@
 
 mod bound;
 mod deepest;
+mod found;
 mod gouge;
 mod reach;
 

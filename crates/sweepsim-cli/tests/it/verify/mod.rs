@@ -281,7 +281,7 @@ fn the_bracket_is_proven_and_the_faulty_one_refuted() {
         assert_eq!(output.status.code(), Some(code), "{}", text(&output.stdout));
         let report = fs::read(folder.path(&format!("{job}/report.json"))).unwrap();
         let report: Report = serde_json::from_slice(&report).unwrap();
-        let [statement] = &report.statements.as_deref().unwrap()[..] else {
+        let [statement] = report.statements.as_deref().unwrap() else {
             panic!("{:?}", report.statements)
         };
         assert_eq!((statement.state, statement.open_count), (state, 0));

@@ -1,0 +1,61 @@
+//! What a search has found, and how findings join.
+
+use crate::statement::{OpenBox, Witness};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+/// As many open places are described, of each part of the work.
+pub(super) const MOST_OPEN: usize = 100;
+
+/// What was found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    pub deepest: Option<Witness>,
+    /// No point is deeper.
+    pub bound: f64,
+    /// Where it is not known better, the deepest first: at most [`MOST_OPEN`].
+    pub open: Vec<OpenBox>,
+    /// The bounds of all these.
+    pub open_depths: Vec<f64>,
+    /// The deepest place of each move that goes beyond the limit, as far as they were seen.
+    pub moves: BTreeMap<usize, Witness>,
+    pub pairs: usize,
+}
+
+impl Found {
+    /// With what was found of another solid of the same cutter.
+    pub fn beside(&mut self, other: Self) {
+        self.bound = self.bound.max(other.bound);
+        self.open.extend(other.open);
+        self.open_depths.extend(other.open_depths);
+        self.take(other.deepest, other.moves, other.pairs);
+    }
+
+    /// What is known after an earlier look at the same.
+    pub fn after(mut self, earlier: Self) -> Self {
+        if earlier.pairs > 0 {
+            self.bound = self.bound.min(earlier.bound);
+        }
+        self.take(earlier.deepest, earlier.moves, earlier.pairs);
+        self
+    }
+
+    fn take(&mut self, deepest: Option<Witness>, moves: BTreeMap<usize, Witness>, pairs: usize) {
+        self.pairs += pairs;
+        for witness in moves.into_values() {
+            self.take_move(witness);
+        }
+        let depth = |witness: &Option<Witness>| witness.as_ref().map_or(0.0, |witness| witness.depth);
+        if depth(&deepest) > depth(&self.deepest) {
+            self.deepest = deepest;
+        }
+    }
+
+    pub fn take_move(&mut self, witness: Witness) {
+        match self.moves.entry(witness.number) {
+            Entry::Vacant(place) => drop(place.insert(witness)),
+            Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
+            Entry::Occupied(_) => {}
+        }
+    }
+}
