@@ -6,13 +6,15 @@
 //!
 //! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
 
+mod excess;
 mod motion;
 mod search;
 mod solid;
 mod statement;
 mod tool;
 
-pub use search::{Cutter, Enclosed, Limits, deepest};
+pub use excess::{Left, highest};
+pub use search::{Closest, Cutter, Enclosed, Limits, closest, deepest};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

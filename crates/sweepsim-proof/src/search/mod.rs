@@ -1,9 +1,11 @@
-//! The search for the deepest point.
+//! The searches for the deepest point and for the nearest.
 
 mod bound;
+mod closest;
 mod deepest;
 mod found;
 mod gouge;
 mod reach;
 
+pub use closest::{Closest, closest};
 pub use gouge::{Cutter, Enclosed, Limits, deepest};

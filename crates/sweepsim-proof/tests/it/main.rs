@@ -1,4 +1,6 @@
 //! Proofs against what is known.
 
+mod apart;
 mod scenes;
+mod standing;
 mod walls;

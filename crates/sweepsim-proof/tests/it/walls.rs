@@ -11,7 +11,7 @@ const LIMITS: Limits = Limits {
 };
 
 /// Blocks side by side, as a solid: they touch nowhere.
-fn blocks(all: &[([f64; 3], [f64; 3])]) -> Target {
+pub(super) fn blocks(all: &[([f64; 3], [f64; 3])]) -> Target {
     let triangles = all
         .iter()
         .flat_map(|(low, high)| TriangleSoup::block(*low, *high).triangles);
@@ -22,7 +22,7 @@ fn blocks(all: &[([f64; 3], [f64; 3])]) -> Target {
 }
 
 /// A block with a slot along x: its profile in `y, z`, extruded.
-fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> Target {
+pub(super) fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> Target {
     let count = profile.len();
     let at = |k: usize, x: f64| [x, profile[k % count][0], profile[k % count][1]];
     let mut triangles = Vec::new();
@@ -55,7 +55,7 @@ fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> Target {
 }
 
 /// A slot from `y = left` to `y = right` down to `z = floor`, in a block of 60 × 40 × 20 mm.
-fn slot(left: f64, right: f64, floor: f64) -> Target {
+pub(super) fn slot(left: f64, right: f64, floor: f64) -> Target {
     let profile = [
         [-20.0, -10.0],
         [20.0, -10.0],
