@@ -12,7 +12,7 @@ mod solid;
 mod statement;
 mod tool;
 
-pub use search::{Cutter, Enclosed, Limits, deepest};
+pub use search::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

@@ -5,5 +5,6 @@ mod deepest;
 mod found;
 mod gouge;
 mod reach;
+mod trace;
 
-pub use gouge::{Cutter, Enclosed, Limits, deepest};
+pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};
