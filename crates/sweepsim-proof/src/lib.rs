@@ -6,12 +6,14 @@
 //!
 //! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
 
+mod certificate;
 mod motion;
 mod search;
 mod solid;
 mod statement;
 mod tool;
 
+pub use certificate::{claim, scene};
 pub use search::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};

@@ -1,4 +1,5 @@
 //! Proofs against what is known.
 
+mod certificates;
 mod scenes;
 mod walls;
