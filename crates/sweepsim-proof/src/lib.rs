@@ -6,6 +6,7 @@
 //!
 //! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
 
+mod certificate;
 mod excess;
 mod motion;
 mod search;
@@ -13,8 +14,9 @@ mod solid;
 mod statement;
 mod tool;
 
+pub use certificate::{claim, scene};
 pub use excess::{Left, highest};
-pub use search::{Closest, Cutter, Enclosed, Limits, closest, deepest};
+pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest, deepest_recorded};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

@@ -7,6 +7,8 @@ pub struct Witness {
     pub number: usize,
     /// The time in it, from 0 to 1.
     pub time: f64,
+    /// The [piece](crate::Piece) of the part of the work that it was found in, and the parameter in it.
+    pub piece: (usize, f64),
     /// Where.
     pub place: [f64; 3],
     /// How deep, in millimetres.

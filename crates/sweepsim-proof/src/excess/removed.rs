@@ -32,8 +32,8 @@ struct Candidate<'a> {
 }
 
 impl<'a> Course<'a> {
-    pub fn new(solids: &'a [Convex], stretches: &'a [Stretch]) -> Self {
-        let of = |solid: &'a Convex| (Run::new(solid, stretches), Level::new(solid));
+    pub fn new(solids: &'a [Convex], stretches: &'a [Stretch], rounding: f64) -> Self {
+        let of = |solid: &'a Convex| (Run::new(solid, stretches, rounding), Level::new(solid));
         Self {
             solids: solids.iter().map(of).collect(),
         }

@@ -3,7 +3,6 @@
 use super::removed::{Course, Removed};
 use super::stock::Before;
 use super::surface::Patch;
-use crate::motion::stretches_of;
 use crate::search::{Cutter, Limits};
 use crate::solid::Target;
 use crate::tool::Convex;
@@ -59,20 +58,26 @@ pub fn highest(
     monitor: &dyn Monitor,
 ) -> Result<Option<Left>, MeshError> {
     let before = Before::new(stock)?;
-    let deviation = 1e-3 * limits.width;
     let mut size = target.size;
     let mut motions = Vec::with_capacity(cutters.len());
     for cutter in cutters {
         let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-        let all = stretches_of(cutter.path, 0..cutter.path.moves(), reach, deviation);
+        // Other courses of rapids are only possible.
+        let own = Cutter {
+            others: None,
+            ..*cutter
+        };
+        let all = own.stretches(0..cutter.path.moves(), limits.deviation());
         let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
         size = far.fold(size, f64::max) + reach;
         motions.push(all);
     }
     let courses = cutters.iter().zip(&motions);
     let removed = Removed {
-        courses: courses.map(|(cutter, all)| Course::new(cutter.solids, all)).collect(),
-        margin: deviation + ROUNDING * size,
+        courses: courses
+            .map(|(cutter, all)| Course::new(cutter.solids, all, ROUNDING * size))
+            .collect(),
+        margin: limits.deviation() + ROUNDING * size,
     };
     let scene = Scene {
         target,

@@ -5,4 +5,4 @@ mod stretch;
 
 pub(crate) use run::Run;
 pub use stretch::Placement;
-pub(crate) use stretch::{Stretch, stretches_of};
+pub(crate) use stretch::Stretch;

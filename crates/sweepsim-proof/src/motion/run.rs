@@ -56,16 +56,19 @@ pub(crate) struct Run<'a> {
     /// The root is the last one.
     pub nodes: Vec<Node>,
     pub reach: f64,
+    slack: f64,
 }
 
 impl<'a> Run<'a> {
-    pub fn new(solid: &'a Convex, stretches: &'a [Stretch]) -> Self {
+    /// `slack`: boxes are so much larger, for rounding.
+    pub fn new(solid: &'a Convex, stretches: &'a [Stretch], slack: f64) -> Self {
         let mut run = Self {
             solid,
             stretches,
             ends: stretches.iter().flat_map(|stretch| stretch.ends).collect(),
             nodes: Vec::with_capacity(2 * stretches.len()),
             reach: solid.reach(),
+            slack,
         };
         if !stretches.is_empty() {
             run.build(0, stretches.len());
@@ -85,7 +88,7 @@ impl<'a> Run<'a> {
             Node {
                 first,
                 last,
-                swept: self.swept(&stretch.ends, axis, bend),
+                swept: self.swept(&stretch.ends, axis, bend + self.slack),
                 tips,
                 axis,
                 bend,

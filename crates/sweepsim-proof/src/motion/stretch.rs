@@ -1,8 +1,7 @@
 //! A stretch of a motion with bounds on how fast its tip and axis move and bend.
 
 use nalgebra::Vector3;
-use std::ops::Range;
-use sweepsim_motion::{Path, Segment};
+use sweepsim_motion::Segment;
 
 /// Where the tip is and where the axis points.
 #[derive(Clone, Copy, Debug)]
@@ -60,15 +59,6 @@ impl Stretch {
         }
     }
 
-    /// The segments of a move, of equal duration between two times of it.
-    pub fn add(all: &mut Vec<Self>, segments: Vec<Segment>, number: usize, [from, to]: [f64; 2]) {
-        let count = segments.len() as f64;
-        let time = |k: usize| from + (to - from) * k as f64 / count;
-        for (k, segment) in segments.into_iter().enumerate() {
-            all.push(Self::new(segment, number, [time(k), time(k + 1)]));
-        }
-    }
-
     /// Whether the axis stays the same.
     pub fn keeps_axis(&self) -> bool {
         self.axis.speed <= STILL
@@ -108,17 +98,6 @@ impl Stretch {
         let turning = self.axis.bend + self.axis.speed * self.axis.speed;
         (self.tip.bend + turning * reach) * duration * duration / 8.0
     }
-}
-
-/// The stretches of some moves of a path, for a tool that reaches so far from its tip, within a deviation.
-pub(crate) fn stretches_of(path: &Path, moves: Range<usize>, reach: f64, deviation: f64) -> Vec<Stretch> {
-    let mut stretches = Vec::with_capacity(moves.len());
-    let (own, first) = path.unpacked(moves.clone());
-    for number in moves {
-        let segments = own.segments_of_symmetric(number - first, reach, deviation);
-        Stretch::add(&mut stretches, segments, number, [0.0, 1.0]);
-    }
-    stretches
 }
 
 fn placement(segment: &Segment, t: f64) -> Placement {

@@ -11,7 +11,8 @@
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
 
 use super::reach::During;
-use crate::solid::{Cell, MOST_WAYS, Triangle, Way, is_outside};
+use super::trace::{Normals, Reason};
+use crate::solid::{Cell, MOST_WAYS, Normal, Triangle, Way, Written, is_outside};
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
 
@@ -23,6 +24,12 @@ pub(super) struct Depth {
     pub normal: Vector3<f64>,
     /// A place that may be about as deep.
     pub place: Option<Vector3<f64>>,
+    /// What the bound says, and of which normals.
+    pub reason: (Reason, Normals),
+}
+
+fn of_one(written: Written) -> (Reason, Normals) {
+    (Reason::Lifted, [Some(written), None, None])
 }
 
 /// So many of the directions are tried together.
@@ -45,13 +52,14 @@ impl Above<'_> {
             value: f64::INFINITY,
             normal: ways.first().map_or_else(Vector3::z, |way| way.normal),
             place: None,
+            reason: (Reason::Lifted, [None; 3]),
         };
         let mut below = [0.0; MOST_WAYS + 1];
         for (way, below) in ways.iter().zip(&mut below) {
             *below = self.below(&way.normal);
             let value = way.top + *below;
             if way.out && value < best.value && value <= self.cell.half {
-                (best.value, best.normal) = (value, way.normal);
+                (best.value, best.normal, best.reason) = (value, way.normal, of_one(way.written));
                 if value <= enough {
                     return best;
                 }
@@ -101,6 +109,7 @@ impl Above<'_> {
                 value,
                 normal: a.normal,
                 place: Some(middle),
+                reason: (Reason::Slab, [Some(a.written), Some(b.written), None]),
             };
         }
     }
@@ -123,8 +132,10 @@ impl Above<'_> {
         let half = self.cell.half;
         let used = planes.iter().zip(tops).filter(|(_, top)| *top > f64::NEG_INFINITY);
         let (mut normals, mut needs, mut own) = (SmallVec::<[Vector3<f64>; 3]>::new(), [0.0; 3], [0.0; 3]);
+        let mut written = [None; 3];
         for (i, ((way, below), top)) in used.enumerate() {
             normals.push(way.normal);
+            written[i] = Some(way.written);
             needs[i] = (top + below).max(-half);
             own[i] = (top - way.normal.dot(&self.cell.centre)).max(-half) + 0.01 * half;
         }
@@ -141,25 +152,35 @@ impl Above<'_> {
         };
         if is_outside(&(self.cell.centre + off), self.cell.pieces(), self.triangles) == Some(true) {
             let normal = lift.try_normalize(1e-9 * half).unwrap_or(normals[0]);
-            (best.value, best.normal, best.place) = (value, normal, None);
+            let reasons = [Reason::Lifted, Reason::LiftedTwice, Reason::LiftedThrice];
+            let reason = (reasons[normals.len() - 1], written);
+            *best = Depth {
+                value,
+                normal,
+                place: None,
+                reason,
+            };
         }
     }
 
     /// Turns a normal towards where both solids are farther apart: by the points that touch first.
     fn descend(&self, enough: f64, best: &mut Depth) {
-        let mut normal = best.normal;
+        let Some(mut short) = Normal::near(&best.normal) else {
+            return;
+        };
+        let mut normal = short.vector;
         let value_of = |normal: &Vector3<f64>| self.cell.top(normal, self.triangles).0 + self.below(normal);
         let mut value = value_of(&normal);
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..STEPS {
             let apart = self.cell.top(&normal, self.triangles).1 - self.during.farthest(&-normal).1;
             let across = apart - normal * normal.dot(&apart);
-            let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
+            let Some(turned) = Normal::near(&(normal - across * step)) else {
                 break;
             };
-            let next = value_of(&turned);
+            let next = value_of(&turned.vector);
             if next < value {
-                (normal, value) = (turned, next);
+                (short, normal, value) = (turned, turned.vector, next);
                 step *= 1.5;
             } else {
                 step *= 0.25;
@@ -169,42 +190,44 @@ impl Above<'_> {
             }
         }
         let better = value < best.value && value <= self.cell.half;
-        if better && self.cell.way(normal, self.triangles).out {
-            (best.value, best.normal, best.place) = (value, normal, None);
+        if better && self.cell.way(short, self.triangles).out {
+            *best = Depth {
+                value,
+                normal,
+                place: None,
+                reason: of_one(short.written),
+            };
         }
     }
 
-    /// Whether no point of the solid is in the cell.
-    pub fn misses(&self) -> bool {
+    /// The normal of a plane between the solid and the cell, farther than this from one of them.
+    pub fn separating(&self, gap_needed: f64) -> Option<Written> {
         let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(&-normal));
         // Away from the axis, or beyond one of its ends.
         let away = self.during.core(&self.cell.centre) - self.cell.centre;
         let axis = self.during.ends[0].axis;
-        let starts = away.try_normalize(1e-12).into_iter().chain([axis, -axis]);
-        let best = starts.map(|normal| (gap(&normal), normal));
-        let Some((mut value, mut normal)) = best.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            return false;
-        };
+        let starts = [away, axis, -axis].into_iter().filter_map(|start| Normal::near(&start));
+        let best = starts.map(|normal| (gap(&normal.vector), normal));
+        let (mut value, mut short) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let mut normal = short.vector;
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..2 * STEPS {
-            if value > 0.0 {
-                return true;
+            if value > gap_needed {
+                return Some(short.written);
             }
             let corner = self.cell.centre + normal.map(|c| self.cell.half.copysign(c));
             let apart = corner - self.during.farthest(&-normal).1;
             let across = apart - normal * normal.dot(&apart);
-            let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
-                return false;
-            };
-            let next = gap(&turned);
+            let turned = Normal::near(&(normal - across * step))?;
+            let next = gap(&turned.vector);
             if next > value {
-                (normal, value) = (turned, next);
+                (short, normal, value) = (turned, turned.vector, next);
                 step *= 1.5;
             } else {
                 step *= 0.25;
             }
         }
-        value > 0.0
+        (value > gap_needed).then_some(short.written)
     }
 }
 

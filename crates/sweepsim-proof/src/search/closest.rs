@@ -6,7 +6,7 @@
 
 use super::gouge::{Cutter, Limits};
 use super::reach::During;
-use crate::motion::{Run, Stretch, stretches_of};
+use crate::motion::Run;
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
 use crate::tool::{Convex, Level};
@@ -172,33 +172,24 @@ impl Found {
     /// Of some moves of a body. `known`: so near something is.
     fn of(target: &Target, body: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Self {
         let reach = body.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-        let deviation = 1e-3 * limits.width;
-        let mut stretches = stretches_of(body.path, moves.clone(), reach, deviation);
-        for other in body.others.iter().flat_map(|others| others.of(moves.clone())) {
-            let mut from = 0.0;
-            for (k, to) in other.times.iter().enumerate() {
-                let segments = other.path.segments_of_symmetric(k, reach, deviation);
-                Stretch::add(&mut stretches, segments, other.number, [from, *to]);
-                from = *to;
-            }
-        }
+        let stretches = body.stretches(moves, limits.deviation());
         let far = stretches
             .iter()
             .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
-        let size = far.fold(target.size, f64::max) + reach;
+        let rounding = ROUNDING * (far.fold(target.size, f64::max) + reach);
         let mut all = Self {
             bound: f64::INFINITY,
             ..Self::default()
         };
         for solid in body.solids {
-            let run = Run::new(solid, &stretches);
+            let run = Run::new(solid, &stretches, rounding);
             let search = Search {
                 target,
                 run: &run,
                 level: Level::new(solid),
                 limits,
                 known,
-                allowance: deviation + ROUNDING * size,
+                allowance: limits.deviation() + rounding,
                 found: Self {
                     bound: f64::INFINITY,
                     ..Self::default()
@@ -433,11 +424,12 @@ impl<'a> Search<'a> {
         true
     }
 
-    fn see(&mut self, stretch: usize, t: f64, place: Vector3<f64>, distance: f64) {
-        let stretch = &self.run.stretches[stretch];
+    fn see(&mut self, piece: usize, t: f64, place: Vector3<f64>, distance: f64) {
+        let stretch = &self.run.stretches[piece];
         let witness = Witness {
             number: stretch.number,
             time: stretch.time(t),
+            piece: (piece, t),
             place: place.into(),
             depth: distance,
         };

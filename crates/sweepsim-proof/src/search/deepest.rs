@@ -3,6 +3,7 @@
 use super::bound::{Above, Depth};
 use super::found::{Found, MOST_OPEN};
 use super::reach::During;
+use super::trace::{Reason, Trace};
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
@@ -18,10 +19,14 @@ pub(super) struct Wanted {
     pub width: f64,
     /// Added to every bound: rounding, and how far the segments are from the moves.
     pub allowance: f64,
+    /// Of that, rounding alone.
+    pub rounding: f64,
     /// So many pairs of a cell and a time may be looked at.
     pub pairs: usize,
     /// Some point is known to be so deep.
     pub known: f64,
+    /// Whether a tree is left for a checker.
+    pub recorded: bool,
 }
 
 /// Where cutters go deep, the enclosure may be as wide as this part of the depth.
@@ -47,6 +52,8 @@ struct Pair<'a> {
     order: usize,
     cell: &'a Cell,
     when: When,
+    /// In the trace.
+    node: u32,
 }
 
 impl PartialEq for Pair<'_> {
@@ -79,6 +86,7 @@ pub(super) struct Search<'a> {
     open: BinaryHeap<Pair<'a>>,
     /// How many pairs have been found.
     count: usize,
+    trace: Trace,
 }
 
 impl<'a> Search<'a> {
@@ -90,6 +98,7 @@ impl<'a> Search<'a> {
             found: Found::default(),
             open: BinaryHeap::new(),
             count: 0,
+            trace: Trace::new(wanted.recorded),
         }
     }
 
@@ -97,7 +106,7 @@ impl<'a> Search<'a> {
         let Some(root) = self.run.nodes.len().checked_sub(1) else {
             return self.found;
         };
-        self.push(f64::INFINITY, &self.target.root, When::Node(root));
+        self.push((f64::INFINITY, 0), &self.target.root, When::Node(root));
         while let Some(pair) = self.open.pop() {
             if pair.depth <= self.enough() {
                 // So are all others.
@@ -115,10 +124,14 @@ impl<'a> Search<'a> {
             self.found.pairs += 1;
             self.visit(&pair);
         }
+        if self.wanted.recorded {
+            let tree = self.trace.written(self.found.bound, self.wanted.allowance);
+            self.found.trees.push(tree);
+        }
         self.found
     }
 
-    fn push(&mut self, depth: f64, cell: &'a Cell, when: When) {
+    fn push(&mut self, (depth, node): (f64, u32), cell: &'a Cell, when: When) {
         let order = self.count;
         self.count += 1;
         self.open.push(Pair {
@@ -126,6 +139,7 @@ impl<'a> Search<'a> {
             order,
             cell,
             when,
+            node,
         });
     }
 
@@ -147,26 +161,28 @@ impl<'a> Search<'a> {
     }
 
     fn visit(&mut self, pair: &Pair<'a>) {
-        let Pair { cell, when, .. } = *pair;
+        let Pair { cell, when, node, .. } = *pair;
         if matches!(cell.near, Near::Outside) {
+            self.nothing(node, Reason::Outside);
             return;
         }
         let own;
         let (during, few) = match when {
             When::Node(number) => {
-                let node = &self.run.nodes[number];
-                if node.swept.misses(&cell.centre, cell.half) {
+                let some = &self.run.nodes[number];
+                if some.swept.misses(&cell.centre, cell.half) {
+                    self.nothing(node, Reason::Missed);
                     return;
                 }
                 let during = During {
                     run: self.run,
-                    ends: &self.run.ends[2 * node.first..2 * node.last],
-                    axis: node.axis,
-                    bend: node.bend,
+                    ends: &self.run.ends[2 * some.first..2 * some.last],
+                    axis: some.axis,
+                    bend: some.bend,
                 };
-                let wide = node.tips.size() > 8.0 * cell.half;
-                let costly = node.axis.is_none() && node.last - node.first > MOST_TURNING;
-                (during, node.halves.is_none() || !(wide || costly))
+                let wide = some.tips.size() > 8.0 * cell.half;
+                let costly = some.axis.is_none() && some.last - some.first > MOST_TURNING;
+                (during, some.halves.is_none() || !(wide || costly))
             }
             When::Part { stretch, times } => {
                 let stretch = &self.run.stretches[stretch];
@@ -190,6 +206,7 @@ impl<'a> Search<'a> {
             value: pair.depth,
             normal: Vector3::z(),
             place: None,
+            reason: (Reason::Middle, [None; 3]),
         };
         // Whether shorter times would do, as the path would bend less.
         let mut bends = false;
@@ -203,6 +220,7 @@ impl<'a> Search<'a> {
                 depth.place = Some(cell.centre);
             } else {
                 let own = above.depth(self.enough());
+                self.trace.bound(node, own.reason.0, own.reason.1, own.value);
                 bends = own.value - during.bend <= self.enough();
                 depth = Depth {
                     value: own.value.min(depth.value),
@@ -211,10 +229,12 @@ impl<'a> Search<'a> {
             }
             let little_known = depth.value > 2.0 * cell.half || cell.half < FINE * self.wanted.width;
             if depth.value > self.enough() && (pieces == 0 || little_known) {
-                depth.value = depth.value.min(cell.deepest(&self.target.distance));
+                depth.value = depth.value.min(self.deepest_by_middle(cell, node));
             }
             if depth.value > self.enough() {
-                if above.misses() {
+                if let Some(normal) = above.separating(2.0 * self.wanted.rounding) {
+                    let normals = [Some(normal), None, None];
+                    self.trace.bound(node, Reason::Separated, normals, f64::NEG_INFINITY);
                     return;
                 }
                 self.sample(when, &during, &depth);
@@ -223,27 +243,30 @@ impl<'a> Search<'a> {
         if depth.value <= self.enough() {
             self.settle(depth.value);
         } else if cell.half < 0.05 * self.wanted.width
-            || !self.divide(cell, when, (depth.value, bends || during.bend > cell.half))
+            || !self.divide((cell, node), when, (depth.value, bends || during.bend > cell.half))
         {
             self.leave(pair, depth.value);
         }
     }
 
     /// Divides a pair: the time if the solid moves farther in it than the cell is wide, else the cell.
-    fn divide(&mut self, cell: &'a Cell, when: When, (depth, bends): (f64, bool)) -> bool {
+    fn divide(&mut self, (cell, node): (&'a Cell, u32), when: When, (depth, bends): (f64, bool)) -> bool {
         let (stretch, times) = match when {
             When::Node(number) => {
-                let node = self.run.nodes[number];
-                match node.halves {
+                let some = self.run.nodes[number];
+                match some.halves {
                     Some(halves) => {
-                        let turns = node.axis.is_none() && node.last - node.first > MOST_TURNING;
-                        if bends || turns || node.tips.size() > 2.0 * cell.half {
-                            halves.iter().for_each(|half| self.push(depth, cell, When::Node(*half)));
+                        let turns = some.axis.is_none() && some.last - some.first > MOST_TURNING;
+                        if bends || turns || some.tips.size() > 2.0 * cell.half {
+                            let first = self.trace.divide_time(node);
+                            for (half, node) in halves.into_iter().zip(first..) {
+                                self.push((depth, node), cell, When::Node(half));
+                            }
                             return true;
                         }
-                        return self.divide_cell(cell, when, depth);
+                        return self.divide_cell((cell, node), when, depth);
                     }
-                    None => (node.first, [0.0, 1.0]),
+                    None => (some.first, [0.0, 1.0]),
                 }
             }
             When::Part { stretch, times } => (stretch, times),
@@ -261,42 +284,63 @@ impl<'a> Search<'a> {
             self.run.solid.contains([(off - placement.axis * along).norm(), along])
         };
         if !(bends || moves && !is_there()) || duration < 1e-9 {
-            return self.divide_cell(cell, when, depth);
+            return self.divide_cell((cell, node), when, depth);
         }
-        for times in [[times[0], middle], [middle, times[1]]] {
-            self.push(depth, cell, When::Part { stretch, times });
+        let first = self.trace.divide_time(node);
+        for (times, node) in [[times[0], middle], [middle, times[1]]].into_iter().zip(first..) {
+            self.push((depth, node), cell, When::Part { stretch, times });
         }
         true
     }
 
-    fn divide_cell(&mut self, cell: &'a Cell, when: When, depth: f64) -> bool {
+    fn divide_cell(&mut self, (cell, node): (&'a Cell, u32), when: When, depth: f64) -> bool {
         let target = self.target;
         let half = 0.5 * cell.half;
-        for octant in 0..8 {
+        let first = self.trace.divide_cell(node);
+        for (octant, node) in (0..8).zip(first..) {
             // Most of them are not reached.
             if let When::Node(number) = when
                 && self.run.nodes[number].swept.misses(&cell.centre_of_child(octant), half)
             {
+                self.nothing(node, Reason::Missed);
                 continue;
             }
             let Some(child) = cell.child(octant, &target.triangles, &target.distance, &target.cells_left) else {
                 return false;
             };
             if matches!(child.near, Near::Outside) {
+                self.nothing(node, Reason::Outside);
                 continue;
             }
             let known = match child.count() {
-                0 => depth.min(child.deepest(&target.distance)),
-                1..=MOST_PIECES => depth.min(child.depth(&target.triangles)),
+                0 => depth.min(self.deepest_by_middle(child, node)),
+                1..=MOST_PIECES => {
+                    let (own, way) = child.depth(&target.triangles);
+                    let normals = [way.map(|way| way.written), None, None];
+                    self.trace.bound(node, Reason::CellLifted, normals, own);
+                    depth.min(own)
+                }
                 _ => depth,
             };
             if known <= self.enough() {
                 self.settle(known);
             } else {
-                self.push(known, child, when);
+                self.push((known, node), child, when);
             }
         }
         true
+    }
+
+    /// A bound of a cell by the depth of its middle.
+    fn deepest_by_middle(&mut self, cell: &Cell, node: u32) -> f64 {
+        let depth = cell.deepest(&self.target.distance);
+        self.trace.bound(node, Reason::Middle, [None; 3], depth);
+        depth
+    }
+
+    /// Nothing of the solid is in the target here.
+    fn nothing(&mut self, node: u32, reason: Reason) {
+        self.trace.bound(node, reason, [None; 3], f64::NEG_INFINITY);
     }
 
     /// Looks at points of the solid that may be the deepest.
@@ -329,10 +373,12 @@ impl<'a> Search<'a> {
         if depth <= 0.0 {
             return;
         }
-        let stretch: &Stretch = &self.run.stretches[stretch];
+        let number = stretch;
+        let stretch: &Stretch = &self.run.stretches[number];
         let witness = Witness {
             number: stretch.number,
             time: stretch.time(t),
+            piece: (number, t),
             place: (*point).into(),
             depth,
         };
@@ -346,7 +392,7 @@ impl<'a> Search<'a> {
 
     fn leave(&mut self, pair: &Pair, depth: f64) {
         let cell = pair.cell;
-        let depth = depth.min(cell.deepest(&self.target.distance));
+        let depth = depth.min(self.deepest_by_middle(cell, pair.node));
         if depth <= self.enough() {
             return self.settle(depth);
         }

@@ -20,6 +20,8 @@ pub(super) struct Found {
     /// The deepest place of each move that goes beyond the limit, as far as they were seen.
     pub moves: BTreeMap<usize, Witness>,
     pub pairs: usize,
+    /// For each solid, how that was proven, if it was recorded.
+    pub trees: Vec<Vec<u8>>,
 }
 
 impl Found {
@@ -28,13 +30,14 @@ impl Found {
         self.bound = self.bound.max(other.bound);
         self.open.extend(other.open);
         self.open_depths.extend(other.open_depths);
+        self.trees.extend(other.trees);
         self.take(other.deepest, other.moves, other.pairs);
     }
 
     /// What is known after an earlier look at the same.
     pub fn after(mut self, earlier: Self) -> Self {
-        if earlier.pairs > 0 {
-            self.bound = self.bound.min(earlier.bound);
+        if earlier.pairs > 0 && earlier.bound < self.bound {
+            (self.bound, self.trees) = (earlier.bound, earlier.trees);
         }
         self.take(earlier.deepest, earlier.moves, earlier.pairs);
         self

@@ -23,6 +23,62 @@ pub struct Cutter<'a> {
     pub others: Option<&'a OtherCourses>,
 }
 
+/// A piece of a path, as a proof takes it: a rational motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// The move, from 0.
+    pub number: usize,
+    /// The times in it at which the piece begins and ends.
+    pub times: [f64; 2],
+    /// The motion.
+    pub segment: Segment,
+}
+
+impl Cutter<'_> {
+    /// The pieces of some moves: first those of the path, then those of other courses.
+    ///
+    /// No point of the cutter is farther from where it is on the path than the [deviation](Limits::deviation).
+    #[must_use]
+    pub fn pieces(&self, moves: Range<usize>, deviation: f64) -> Vec<Piece> {
+        let reach = self.solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        let mut pieces = Vec::with_capacity(moves.len());
+        let (path, first) = self.path.unpacked(moves.clone());
+        for number in moves.clone() {
+            let segments = path.segments_of_symmetric(number - first, reach, deviation);
+            add(&mut pieces, segments, number, [0.0, 1.0]);
+        }
+        for other in self.others.iter().flat_map(|others| others.of(moves.clone())) {
+            let mut from = 0.0;
+            for (k, to) in other.times.iter().enumerate() {
+                let segments = other.path.segments_of_symmetric(k, reach, deviation);
+                add(&mut pieces, segments, other.number, [from, *to]);
+                from = *to;
+            }
+        }
+        pieces
+    }
+
+    /// The same as stretches.
+    pub(crate) fn stretches(&self, moves: Range<usize>, deviation: f64) -> Vec<Stretch> {
+        let stretch = |piece: Piece| Stretch::new(piece.segment, piece.number, piece.times);
+        self.pieces(moves, deviation).into_iter().map(stretch).collect()
+    }
+}
+
+/// How it was proven that no point of a solid goes deeper during some moves, for a checker: see the page *Proofs
+/// between the lines*.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tree {
+    /// The path.
+    pub path: usize,
+    /// Some of its moves.
+    pub moves: Range<usize>,
+    /// Which of the solids of the cutter.
+    pub solid: usize,
+    /// The divisions, and why each part is bounded. Empty if they were too many.
+    pub bytes: Vec<u8>,
+}
+
 /// What is wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -32,6 +88,14 @@ pub struct Limits {
     pub width: f64,
     /// At most as many pairs of a cell and a time are looked at in the whole request.
     pub pairs: usize,
+}
+
+impl Limits {
+    /// How far the [pieces](Cutter::pieces) of a path may be from it.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        0.5e-3 * self.width
+    }
 }
 
 /// How deep cutters go: an enclosure, with a witness.
@@ -49,6 +113,8 @@ pub struct Enclosed {
     pub moves: Vec<(usize, Witness)>,
     /// Pairs of a cell and a time that were looked at.
     pub pairs: usize,
+    /// How the bound was proven, if that was to be [recorded](deepest_recorded).
+    pub trees: Vec<Tree>,
 }
 
 /// So many moves are looked at together.
@@ -65,6 +131,26 @@ const ROUNDING: f64 = 1e-12;
 /// Encloses how deep cutters go below the surface of a target. `None` if the monitor cancelled the work.
 #[must_use]
 pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &dyn Monitor) -> Option<Enclosed> {
+    enclosed(target, cutters, (limits, false), monitor)
+}
+
+/// The same, with a tree for each part of the work, by which a checker can follow the proof.
+#[must_use]
+pub fn deepest_recorded(
+    target: &Target,
+    cutters: &[Cutter],
+    limits: &Limits,
+    monitor: &dyn Monitor,
+) -> Option<Enclosed> {
+    enclosed(target, cutters, (limits, true), monitor)
+}
+
+fn enclosed(
+    target: &Target,
+    cutters: &[Cutter],
+    (limits, recorded): (&Limits, bool),
+    monitor: &dyn Monitor,
+) -> Option<Enclosed> {
     let parts: Vec<(usize, Range<usize>)> = cutters
         .iter()
         .enumerate()
@@ -97,6 +183,7 @@ pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &d
                 limits.width.max(enough)
             },
             known,
+            recorded,
         };
         let own: Vec<_> = open.iter().map(|number| parts[*number].clone()).collect();
         let again = look_at(target, cutters, (&own, limits), asked, monitor)?;
@@ -107,7 +194,14 @@ pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &d
     }
     let mut all = Enclosed::default();
     let mut depths = Vec::new();
-    for ((path, _), found) in parts.into_iter().zip(found) {
+    for ((path, moves), mut found) in parts.into_iter().zip(found) {
+        let trees = std::mem::take(&mut found.trees).into_iter().enumerate();
+        all.trees.extend(trees.map(|(solid, bytes)| Tree {
+            path,
+            moves: moves.clone(),
+            solid,
+            bytes,
+        }));
         all.join(path, found, &mut depths);
     }
     // What is left open elsewhere, but no deeper than what is known, is settled.
@@ -126,6 +220,7 @@ struct Asked {
     width: f64,
     /// Some point is known to be so deep.
     known: f64,
+    recorded: bool,
 }
 
 /// A search in each of some parts.
@@ -171,21 +266,7 @@ impl Enclosed {
 /// Some moves of a cutter.
 fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, asked: Asked) -> Found {
     let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-    let deviation = 1e-3 * limits.width;
-    let mut stretches = Vec::with_capacity(moves.len());
-    let (path, first) = cutter.path.unpacked(moves.clone());
-    for number in moves.clone() {
-        let segments = path.segments_of_symmetric(number - first, reach, deviation);
-        add(&mut stretches, segments, number, [0.0, 1.0]);
-    }
-    for other in cutter.others.iter().flat_map(|others| others.of(moves.clone())) {
-        let mut from = 0.0;
-        for (k, to) in other.times.iter().enumerate() {
-            let segments = other.path.segments_of_symmetric(k, reach, deviation);
-            add(&mut stretches, segments, other.number, [from, *to]);
-            from = *to;
-        }
-    }
+    let stretches = cutter.stretches(moves, limits.deviation());
     let size = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
@@ -193,9 +274,12 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
     let wanted = Wanted {
         limit: limits.depth,
         width: asked.width,
-        allowance: deviation + ROUNDING * (size + reach),
+        // A checker adds the deviation too, and rounding of its own.
+        allowance: 2.0 * limits.deviation() + ROUNDING * (size + reach),
+        rounding: ROUNDING * (size + reach),
         pairs: asked.pairs,
         known: asked.known,
+        recorded: asked.recorded,
     };
     let mut all = Found::default();
     for solid in cutter.solids {
@@ -204,7 +288,7 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
         if solid.is_loose() {
             wanted.pairs = wanted.pairs.min(FIRST_LOOK);
         }
-        let run = Run::new(solid, &stretches);
+        let run = Run::new(solid, &stretches, wanted.rounding);
         let found = Search::new(target, &run, wanted).run();
         all.beside(found);
     }
@@ -212,10 +296,14 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
 }
 
 /// The segments of a move, of equal duration between two times of it.
-fn add(stretches: &mut Vec<Stretch>, segments: Vec<Segment>, number: usize, [from, to]: [f64; 2]) {
+fn add(pieces: &mut Vec<Piece>, segments: Vec<Segment>, number: usize, [from, to]: [f64; 2]) {
     let count = segments.len() as f64;
     let time = |k: usize| from + (to - from) * k as f64 / count;
     for (k, segment) in segments.into_iter().enumerate() {
-        stretches.push(Stretch::new(segment, number, [time(k), time(k + 1)]));
+        pieces.push(Piece {
+            number,
+            times: [time(k), time(k + 1)],
+            segment,
+        });
     }
 }

@@ -6,6 +6,7 @@ mod deepest;
 mod found;
 mod gouge;
 mod reach;
+mod trace;
 
 pub use closest::{Closest, closest};
-pub use gouge::{Cutter, Enclosed, Limits, deepest};
+pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};

@@ -13,6 +13,8 @@ use sweepsim_dexel::DistanceTo;
 /// A triangle of the surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
+    /// Its number among all that were given.
+    pub number: u32,
     pub corners: [Vector3<f64>; 3],
     /// Unit normal, out of the solid.
     pub normal: Vector3<f64>,
@@ -38,10 +40,45 @@ pub(crate) enum Near {
     Outside,
 }
 
+/// How a normal is written down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Written {
+    /// That of a triangle.
+    OfTriangle(u32),
+    /// Three numbers of any length.
+    Given([f32; 3]),
+}
+
+/// A unit normal that can be written down exactly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Normal {
+    pub vector: Vector3<f64>,
+    pub written: Written,
+}
+
+impl Normal {
+    /// The nearest to a direction that has three short numbers. `None` if it has no length.
+    pub fn near(direction: &Vector3<f64>) -> Option<Self> {
+        let short = direction.try_normalize(1e-12)?.map(|c| c as f32);
+        Some(Self {
+            vector: short.map(f64::from).try_normalize(0.5)?,
+            written: Written::Given(short.into()),
+        })
+    }
+
+    fn of(triangle: &Triangle) -> Self {
+        Self {
+            vector: triangle.normal,
+            written: Written::OfTriangle(triangle.number),
+        }
+    }
+}
+
 /// A direction in which a cutter may be lifted off what is near a cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     pub normal: Vector3<f64>,
+    pub written: Written,
     /// The highest value along it of the surface in the surroundings.
     pub top: f64,
     /// Whether beyond that the surroundings are outside of the solid.
@@ -56,8 +93,8 @@ struct Known {
     ways: Vec<Way>,
     /// Whether all triangles look about the same way.
     is_smooth: bool,
-    /// No point of the cell is deeper.
-    depth: f64,
+    /// No point of the cell is deeper, and the way that says so.
+    depth: (f64, usize),
 }
 
 #[derive(Debug)]
@@ -179,9 +216,11 @@ impl Cell {
         self.known(triangles).is_smooth
     }
 
-    /// No point of the cell is deeper than this in the solid, as far as the directions to try say.
-    pub fn depth(&self, triangles: &[Triangle]) -> f64 {
-        self.known(triangles).depth
+    /// No point of the cell is deeper than this in the solid, as far as the directions to try say, and which of them
+    /// says so.
+    pub fn depth(&self, triangles: &[Triangle]) -> (f64, Option<&Way>) {
+        let known = self.known(triangles);
+        (known.depth.0, known.ways.get(known.depth.1))
     }
 
     fn known(&self, triangles: &[Triangle]) -> &Known {
@@ -197,13 +236,13 @@ impl Cell {
                 corners,
                 ways: Vec::new(),
                 is_smooth,
-                depth: f64::INFINITY,
+                depth: (f64::INFINITY, 0),
             };
             for normal in normals {
                 let way = self.way_above(normal, triangles, &known.corners);
-                let depth = way.top + self.support(&-normal);
-                if way.out && depth <= self.half {
-                    known.depth = known.depth.min(depth);
+                let depth = way.top + self.support(&-normal.vector);
+                if way.out && depth <= self.half && depth < known.depth.0 {
+                    known.depth = (depth, known.ways.len());
                 }
                 known.ways.push(way);
             }
@@ -212,18 +251,19 @@ impl Cell {
     }
 
     /// The mean normal and those of the triangles, as far as they differ; and whether all are nearly the same.
-    fn normals(&self, triangles: &[Triangle]) -> (Vec<Vector3<f64>>, bool) {
+    fn normals(&self, triangles: &[Triangle]) -> (Vec<Normal>, bool) {
         let pieces = self.pieces();
-        let mut clusters: Vec<(Vector3<f64>, f64)> = Vec::new();
+        let mut clusters: Vec<(Normal, f64)> = Vec::new();
         for piece in pieces {
-            let normal = triangles[piece.triangle as usize].normal;
+            let normal = Normal::of(&triangles[piece.triangle as usize]);
             let area = area(&piece.corners);
-            match clusters.iter_mut().find(|(other, _)| other.dot(&normal) > SAME_WAY) {
+            let same = |(other, _): &&mut (Normal, f64)| other.vector.dot(&normal.vector) > SAME_WAY;
+            match clusters.iter_mut().find(same) {
                 Some((_, sum)) => *sum += area,
                 None => clusters.push((normal, area)),
             }
         }
-        let sum: Vector3<f64> = clusters.iter().map(|(normal, area)| normal * *area).sum();
+        let sum: Vector3<f64> = clusters.iter().map(|(normal, area)| normal.vector * *area).sum();
         let mean = sum.try_normalize(1e-300).filter(|_| clusters.len() > 1);
         let is_smooth = mean.is_none_or(|mean| {
             let normal = |piece: &Piece| triangles[piece.triangle as usize].normal;
@@ -233,15 +273,20 @@ impl Cell {
         clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
         clusters.truncate(if is_smooth { 1 } else { MOST_WAYS });
         let own = clusters.iter().map(|(normal, _)| *normal);
+        let mean = mean.and_then(|mean| Normal::near(&mean));
         (mean.into_iter().chain(own).collect(), is_smooth)
     }
 
     /// What is known of a direction.
-    pub fn way(&self, normal: Vector3<f64>, triangles: &[Triangle]) -> Way {
+    pub fn way(&self, normal: Normal, triangles: &[Triangle]) -> Way {
         self.way_above(normal, triangles, &self.known(triangles).corners)
     }
 
-    fn way_above(&self, normal: Vector3<f64>, triangles: &[Triangle], corners: &[Vector3<f64>]) -> Way {
+    fn way_above(&self, normal: Normal, triangles: &[Triangle], corners: &[Vector3<f64>]) -> Way {
+        let Normal {
+            vector: normal,
+            written,
+        } = normal;
         let top = highest(corners, &normal).0;
         let is_out = || {
             let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
@@ -249,8 +294,27 @@ impl Cell {
             let is_near = (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN);
             is_near && is_outside(&above, self.pieces(), triangles) == Some(true)
         };
-        let out = faces_up(self.pieces(), triangles, &normal) || is_out();
-        Way { normal, top, out }
+        let out = self.faces_up(triangles, (&normal, top)) || is_out();
+        Way {
+            normal,
+            written,
+            top,
+            out,
+        }
+    }
+
+    /// Whether no triangle faces down, and from one that faces up, a line along the normal leads above all of them
+    /// within the surroundings: coming down such a line, the first triangle is met from outside.
+    fn faces_up(&self, triangles: &[Triangle], (normal, top): (&Vector3<f64>, f64)) -> bool {
+        let cosine = |piece: &Piece| triangles[piece.triangle as usize].normal.dot(normal);
+        let leads_up = |piece: &Piece| {
+            let middle = piece.corners.iter().sum::<Vector3<f64>>() / piece.corners.len() as f64;
+            let above = middle + normal * (top - normal.dot(&middle) + 0.5 * self.half * MARGIN);
+            (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN)
+        };
+        let pieces = self.pieces();
+        pieces.iter().all(|piece| cosine(piece) >= 0.0)
+            && pieces.iter().any(|piece| cosine(piece) > 0.01 && leads_up(piece))
     }
 
     /// The highest value of the surface along a direction, and where.
@@ -288,16 +352,6 @@ fn highest(points: &[Vector3<f64>], direction: &Vector3<f64>) -> (f64, usize) {
         }
     }
     best
-}
-
-/// Whether no triangle faces down, and one faces up: then what is just above all of them is outside.
-fn faces_up(pieces: &[Piece], triangles: &[Triangle], normal: &Vector3<f64>) -> bool {
-    let cosines = || {
-        pieces
-            .iter()
-            .map(|piece| triangles[piece.triangle as usize].normal.dot(normal))
-    };
-    cosines().all(|cosine| cosine >= 0.0) && cosines().any(|cosine| cosine > 0.01)
 }
 
 /// How deep a point is in the solid; negative outside.

@@ -4,7 +4,7 @@ mod cell;
 mod faults;
 mod polygon;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Triangle, Way, is_outside};
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Normal, Triangle, Way, Written, is_outside};
 
 pub use faults::Fault;
 
@@ -35,7 +35,7 @@ impl Target {
         let distance = DistanceTo::new(soup)?;
         let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         let mut triangles = Vec::with_capacity(soup.triangles.len());
-        for corners in &soup.triangles {
+        for (number, corners) in (0..).zip(&soup.triangles) {
             let corners = corners.map(Vector3::from);
             for corner in &corners {
                 low = low.inf(corner);
@@ -44,14 +44,18 @@ impl Target {
             // A triangle without area has no side; what it covers belongs to its neighbours' edges.
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
             if let Some(normal) = normal.try_normalize(0.0) {
-                triangles.push(Triangle { corners, normal });
+                triangles.push(Triangle {
+                    number,
+                    corners,
+                    normal,
+                });
             }
         }
         let all = Near::Many((0..triangles.len() as u32).collect());
-        let half = 0.5 * (high - low).max() * (1.0 + 1e-9);
         let size = low.amax().max(high.amax());
+        let (centre, half) = root(&low, &high);
         Ok(Self {
-            root: Cell::new(0.5 * (low + high), half, &all, &triangles, &distance),
+            root: Cell::new(centre, half, &all, &triangles, &distance),
             triangles,
             distance,
             cells_left: AtomicUsize::new(MOST_CELLS),
@@ -66,9 +70,27 @@ impl Target {
         faults::faults(&triangles, most)
     }
 
+    /// The cube that is divided: its centre and half of its size.
+    #[must_use]
+    pub fn root(&self) -> ([f64; 3], f64) {
+        (self.root.centre.into(), self.root.half)
+    }
+
     /// How deep a point lies in the solid; negative outside.
     #[must_use]
     pub fn depth(&self, point: [f64; 3]) -> f64 {
         cell::depth(&self.distance, &point.into())
     }
+}
+
+/// A cube around a box, by its centre and half of its size. These have so few digits that the cubes into which it is
+/// divided have exact centres.
+fn root(low: &Vector3<f64>, high: &Vector3<f64>) -> (Vector3<f64>, f64) {
+    /// Of so many parts of the size.
+    const PARTS: f64 = 65536.0;
+    let half = 0.5 * (high - low).max();
+    let unit = (half.max(f64::MIN_POSITIVE) / PARTS).log2().ceil().exp2();
+    let centre = (0.5 * (low + high)).map(|c| (c / unit).round() * unit);
+    // The centre is off by half a unit at most.
+    (centre, ((half / unit).ceil() + 1.0) * unit)
 }

@@ -46,6 +46,17 @@ impl Convex {
         self.loose
     }
 
+    /// The corners of the hull, `(ρ, ζ)`.
+    #[must_use]
+    pub fn corners(&self) -> &[[f64; 2]] {
+        &self.corners
+    }
+
+    /// Its arcs, none longer than 90°: centre, radius, and the unit normals at both ends, counter-clockwise.
+    pub fn arcs(&self) -> impl Iterator<Item = ([f64; 2], f64, [[f64; 2]; 2])> {
+        self.arcs.iter().map(|arc| (arc.centre, arc.radius, arc.normals))
+    }
+
     /// The largest value of `⟨direction, x⟩` over the solid whose axis is a unit vector and whose tip is the origin.
     #[must_use]
     pub fn support(&self, direction: &Vector3<f64>, axis: &Vector3<f64>) -> f64 {

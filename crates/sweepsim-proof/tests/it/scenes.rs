@@ -1,5 +1,6 @@
 //! Random tools, motions and targets, against dense samples.
 
+use crate::certificates::certified;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -10,7 +11,7 @@ use sweepsim_motion::{
     Dovetail, Law, Lollipop, MeridianCurve, MeridianShape, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool,
     Turn,
 };
-use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
+use sweepsim_proof::{Limits, Target};
 
 /// A sphere of triangles.
 fn sphere(centre: [f64; 3], radius: f64, rings: usize) -> TriangleSoup {
@@ -217,18 +218,13 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
     };
     let soup = target(scene.target, scene.size);
     let (solid, tool) = (Target::new(&soup).expect("closed"), tool(scene.tool));
-    let solids = cover(&tool, 2e-4);
     let limits = Limits {
         depth: 0.02,
         width: 0.004,
         pairs: 400_000,
     };
-    let cutters = [Cutter {
-        solids: &solids,
-        path: &path,
-        others: None,
-    }];
-    let found = deepest(&solid, &cutters, &limits, &()).expect("not cancelled");
+    let certified = certified(&soup, &tool, &path, &limits);
+    let found = &certified.found;
     let samples = points(&tool, rings);
     let mut sampled = 0.0_f64;
     for segment in path.segments(0, 15.0, 1e-6) {
@@ -258,6 +254,9 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
             .fold(0.0, f64::max);
         prop_assert!(own.xy().norm() <= radius + 1e-5, "{own} is not in the tool");
     }
+    let checked = certified.checked();
+    prop_assert!(checked.is_proven(), "{:?}", checked);
+    prop_assert!(sampled <= checked.bound.max(1e-9) && checked.bound <= found.bound + 1e-6);
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     let wide = found.bound - known > limits.width.max(known / 64.0) + 1e-9;
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.

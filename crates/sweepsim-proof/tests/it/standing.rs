@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
-use sweepsim_dexel::{DistanceTo, Stock};
+use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
 use sweepsim_motion::{Path, Pose, Tool};
 use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
 
@@ -16,7 +16,7 @@ const LIMITS: Limits = Limits {
     pairs: 500_000,
 };
 
-fn left(target: &Target, tool: &Tool, tips: &[[f64; 3]]) -> Left {
+fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
     let up = [0.0, 0.0, 1.0];
     let poses = tips.iter().map(|tip| Pose::new(*tip, up).expect("a pose"));
     let path = Path::new(poses.collect()).expect("a path");
@@ -30,11 +30,12 @@ fn left(target: &Target, tool: &Tool, tips: &[[f64; 3]]) -> Left {
         path: &path,
         others: None,
     };
-    let left = highest(target, &stock, &[cutter], &LIMITS, &());
+    let target = Target::new(target).expect("closed");
+    let left = highest(&target, &stock, &[cutter], &LIMITS, &());
     left.expect("a stock").expect("not cancelled")
 }
 
-fn check(target: &Target, truth: f64) {
+fn check(target: &TriangleSoup, truth: f64) {
     let tool = Tool::flat(5.0, 30.0).expect("a tool");
     let tips = [
         [-40.0, 0.0, 15.0],

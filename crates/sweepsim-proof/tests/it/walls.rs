@@ -1,28 +1,28 @@
 //! A slot cut with a flat end mill, beside walls that are right or not.
 
+use crate::certificates::{Certified, certified};
 use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Enclosed, Limits, Target, cover, deepest};
+use sweepsim_proof::{Cutter, Limits, Target, cover, deepest_recorded};
 
-const LIMITS: Limits = Limits {
+pub(crate) const LIMITS: Limits = Limits {
     depth: 0.02,
     width: 0.002,
     pairs: 1_000_000,
 };
 
 /// Blocks side by side, as a solid: they touch nowhere.
-pub(super) fn blocks(all: &[([f64; 3], [f64; 3])]) -> Target {
+fn blocks(all: &[([f64; 3], [f64; 3])]) -> TriangleSoup {
     let triangles = all
         .iter()
         .flat_map(|(low, high)| TriangleSoup::block(*low, *high).triangles);
-    Target::new(&TriangleSoup {
+    TriangleSoup {
         triangles: triangles.collect(),
-    })
-    .expect("closed")
+    }
 }
 
 /// A block with a slot along x: its profile in `y, z`, extruded.
-pub(super) fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> Target {
+fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> TriangleSoup {
     let count = profile.len();
     let at = |k: usize, x: f64| [x, profile[k % count][0], profile[k % count][1]];
     let mut triangles = Vec::new();
@@ -51,11 +51,11 @@ pub(super) fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> Target {
         triangles.push([at(p, x[0]), at(r, x[0]), at(q, x[0])]);
         left.remove(k);
     }
-    Target::new(&TriangleSoup { triangles }).expect("closed")
+    TriangleSoup { triangles }
 }
 
 /// A slot from `y = left` to `y = right` down to `z = floor`, in a block of 60 × 40 × 20 mm.
-pub(super) fn slot(left: f64, right: f64, floor: f64) -> Target {
+pub(crate) fn slot(left: f64, right: f64, floor: f64) -> TriangleSoup {
     let profile = [
         [-20.0, -10.0],
         [20.0, -10.0],
@@ -69,7 +69,8 @@ pub(super) fn slot(left: f64, right: f64, floor: f64) -> Target {
     extruded(&profile, [-30.0, 30.0])
 }
 
-fn judged(target: &Target) -> Enclosed {
+/// A slot along x, and its tool.
+pub(crate) fn cut() -> (Tool, Path) {
     let tool = Tool::flat(5.0, 30.0).expect("a tool");
     let up = [0.0, 0.0, 1.0];
     let poses = [
@@ -79,17 +80,17 @@ fn judged(target: &Target) -> Enclosed {
         [40.0, 0.0, 15.0],
     ];
     let path = Path::new(poses.map(|tip| Pose::new(tip, up).expect("a pose")).to_vec()).expect("a path");
-    let solids = cover(&tool, 1e-4);
-    let cutter = Cutter {
-        solids: &solids,
-        path: &path,
-        others: None,
-    };
-    deepest(target, &[cutter], &LIMITS, &()).expect("not cancelled")
+    (tool, path)
 }
 
-fn check(target: &Target, truth: f64) {
-    let found = judged(target);
+fn judged(target: &TriangleSoup) -> Certified {
+    let (tool, path) = cut();
+    certified(target, &tool, &path, &LIMITS)
+}
+
+fn check(target: &TriangleSoup, truth: f64) {
+    let certified = judged(target);
+    let found = &certified.found;
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     assert!(found.open.is_empty(), "{:?}", &found.open[..found.open.len().min(10)]);
     assert!(
@@ -101,6 +102,7 @@ fn check(target: &Target, truth: f64) {
     if truth > 0.02 {
         assert_eq!(found.moves[0].1.number, 1);
     }
+    certified.check(truth);
 }
 
 #[test]
@@ -139,7 +141,9 @@ fn so_is_one_that_stands_on_the_floor() {
         [-20.0, 10.0],
     ];
     // Along its foot, cells see the floor before they see both sides: the bound is not as narrow.
-    let found = judged(&extruded(&profile, [-30.0, 30.0]));
+    let certified = judged(&extruded(&profile, [-30.0, 30.0]));
+    certified.check(0.05);
+    let found = certified.found;
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     assert!((0.048..=0.05).contains(&known) && found.bound >= 0.05);
     assert_eq!(found.moves[0].1.number, 1);
@@ -148,7 +152,7 @@ fn so_is_one_that_stands_on_the_floor() {
 #[test]
 fn threads_do_not_matter() {
     // A raster that digs into the floor by 0.03 mm, in four parts of the work.
-    let target = slot(-12.0, 12.0, 2.03);
+    let target = Target::new(&slot(-12.0, 12.0, 2.03)).expect("closed");
     let tool = Tool::ball(3.0, 30.0).expect("a tool");
     let tip = |k: u32| [-35.0 + 70.0 * f64::from(k % 16) / 15.0, -8.0 + f64::from(k / 16), 2.0];
     let poses = (0..250).map(|k| Pose::new(tip(k), [0.0, 0.0, 1.0]).expect("a pose"));
@@ -164,7 +168,7 @@ fn threads_do_not_matter() {
             path: &path,
             others: None,
         };
-        pool.install(|| deepest(&target, &[cutter], &LIMITS, &()))
+        pool.install(|| deepest_recorded(&target, &[cutter], &LIMITS, &()))
             .expect("not cancelled")
     };
     let one = run(1);

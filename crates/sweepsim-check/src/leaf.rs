@@ -1,0 +1,207 @@
+//! Why no point of a moving solid in a cell is deeper than a number at a time: a theorem for each kind of leaf.
+//!
+//! `H` is the cell, `h` half its size, `H′` its surroundings ([`cell`](crate::cell)), `T` the target
+//! ([`surface`](crate::surface)); the depth of a point is its distance from what is not in `T`. `B` is the solid at any
+//! of the times; `r(n)` bounds `⟨n, x⟩` over `B` and over `B ∩ H` ([`motion`](crate::motion)).
+//!
+//! - **Missed, separated**: a direction `n` with `max_H ⟨n, ·⟩ + r(−n) < 0`: no point of `B` is in `H`.
+//! - **Outside**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
+//! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and `√3 h`.
+//! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`, and `w` has
+//!   `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What is above all planes in
+//!   `H′` is convex and without surface: one place of it is outside of `T`, so all of it is. If `|w| ≤ h`, then `x + w`
+//!   is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a multiple of it. *Cell lifted* is the same
+//!   with all of `H` instead of `B`.
+//! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`, as far as
+//!   that is at most `h`; the smaller of both is at most their mean.
+
+use crate::cell::Cell;
+use crate::motion::{Node, Placement, Run};
+use crate::surface::Surface;
+use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, sub};
+
+/// When.
+pub(crate) enum During<'a> {
+    /// Some stretches.
+    Node(&'a Node),
+    /// Part of one, with its placements at both ends.
+    Part {
+        ends: [Placement; 2],
+        still: bool,
+        bend: f64,
+    },
+}
+
+/// A solid near a cell at a time.
+pub(crate) struct Near<'a> {
+    pub run: &'a Run<'a>,
+    pub during: During<'a>,
+    pub cell: &'a Cell,
+    pub surface: &'a Surface,
+}
+
+impl Near<'_> {
+    /// `r(n)` over `B`.
+    fn reach_up(&self, n: &V3) -> f64 {
+        let (reach, bend) = match &self.during {
+            During::Node(node) => (self.run.reach_of_node(node, n), node.bend),
+            During::Part { ends, still, bend } => (self.run.reach_up(ends, *still, n), *bend),
+        };
+        let sum = reach + bend * norm_up(n);
+        sum + 2.0 * EPS * (reach.abs() + bend)
+    }
+
+    /// `r(n)` over `B ∩ H`.
+    fn reach_in_cell_up(&self, n: &V3) -> f64 {
+        self.reach_up(n).min(self.cell.support_up(n))
+    }
+
+    /// The cell is not lifted by more than this: all that is lifted stays in the surroundings.
+    fn most(&self) -> f64 {
+        self.cell.half * (1.0 + 1e-6)
+    }
+
+    pub fn missed(&self) -> bool {
+        matches!(self.during, During::Node(node) if node.misses(&self.cell.centre, self.cell.half))
+    }
+
+    pub fn separated(&self, n: &V3) -> bool {
+        let (cell, solid) = (self.cell.support_up(n), self.reach_up(&scaled(n, -1.0)));
+        cell + solid + 2.0 * EPS * (cell.abs() + solid.abs()) < 0.0
+    }
+
+    /// Lifted along one normal.
+    pub fn lifted(&self, n: &V3, whole_cell: bool) -> Option<f64> {
+        let down = scaled(n, -1.0);
+        let reach = if whole_cell {
+            self.cell.support_up(&down)
+        } else {
+            self.reach_in_cell_up(&down)
+        };
+        let top = self.top_of_outside(n)?;
+        let lift = top + reach;
+        let value = (lift + 2.0 * EPS * (top.abs() + reach.abs())) / length_for(lift, n);
+        (value <= self.most()).then_some(value)
+    }
+
+    /// `e` of a plane, if what is above it in the surroundings is outside.
+    fn top_of_outside(&self, n: &V3) -> Option<f64> {
+        let top = self.cell.top_up(n)?;
+        let corner = self.cell.corner_outside(n, self.surface)?;
+        (dot_down(n, &corner) > top).then_some(top)
+    }
+
+    pub fn slab(&self, n: &V3, m: &V3) -> Option<f64> {
+        // Of unit length, but for a few roundings: the lengths are divided by.
+        let (a, b) = (self.top_of_outside(n)?, self.top_of_outside(m)?);
+        let [n_long, m_long] = [n, m].map(|n| norm_up(n) / MORE);
+        let (a, b) = (a / n_long, b / m_long);
+        let mean = scaled(&add(&scaled(n, 1.0 / n_long), &scaled(m, 1.0 / m_long)), -0.5);
+        let reach = self.cell.support_up(&mean);
+        let value = 0.5 * (a + b) + reach;
+        let off = 16.0 * EPS * (a.abs() + b.abs() + crate::vector::size(&self.cell.centre) + self.cell.half);
+        (value + off <= self.most()).then_some(value + off)
+    }
+
+    /// Lifted above two or three planes.
+    pub fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
+        let reach: Vec<f64> = normals
+            .iter()
+            .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
+            .collect();
+        // Each piece is below that plane which has to be raised least for it.
+        let mut tops = vec![f64::NEG_INFINITY; normals.len()];
+        for own in self.cell.tops_up(normals)? {
+            let least = (0..normals.len()).min_by(|i, j| (own[*i] + reach[*i]).total_cmp(&(own[*j] + reach[*j])))?;
+            tops[least] = tops[least].max(own[least]);
+        }
+        let half = self.cell.half;
+        let used: Vec<usize> = (0..normals.len()).filter(|i| tops[*i] > f64::NEG_INFINITY).collect();
+        let normals: Vec<V3> = used.iter().map(|i| normals[*i]).collect();
+        let size = self.surface.size + crate::vector::size(&self.cell.centre);
+        // The lift is looked for a little beyond what is needed, and then checked.
+        let more = 64.0 * EPS * size;
+        let needs: Vec<f64> = used.iter().map(|i| (tops[*i] + reach[*i]).max(-half) + more).collect();
+        let lift = shortest(&normals, &needs)?;
+        let lifts = used
+            .iter()
+            .zip(&normals)
+            .all(|(i, n)| dot_down(n, &lift) >= tops[*i] + reach[*i] + 4.0 * EPS * size);
+        let value = norm_up(&lift);
+        if !lifts || value > self.most() {
+            return None;
+        }
+        // A place above all planes, in the surroundings, that is outside.
+        let own = |(i, n): (&usize, &V3)| (tops[*i] - dot(n, &self.cell.centre)).max(-half) + 0.01 * half;
+        let needs: Vec<f64> = used.iter().zip(&normals).map(own).collect();
+        let place = self.cell.place(&shortest(&normals, &needs)?)?;
+        let is_above = used.iter().zip(&normals).all(|(i, n)| dot_down(n, &place) > tops[*i]);
+        (is_above && self.surface.is_outside(&place) == Some(true)).then_some(value)
+    }
+}
+
+/// What a height along `n` is divided by: a bound of the length of `n`, so that the quotient is not too small.
+fn length_for(height: f64, n: &V3) -> f64 {
+    let length = norm_up(n);
+    if height > 0.0 {
+        length * (2.0 - MORE) * (2.0 - MORE)
+    } else {
+        length
+    }
+}
+
+/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet some of them exactly, and for these, all others too.
+fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
+    let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
+    let mut best: Option<V3> = None;
+    let mut take = |w: V3| {
+        let meets = normals
+            .iter()
+            .zip(needs)
+            .all(|(n, need)| dot_up(n, &w) >= need - 1e-13 * size);
+        if meets && best.is_none_or(|best| dot(&w, &w) < dot(&best, &best)) {
+            best = Some(w);
+        }
+    };
+    take([0.0; 3]);
+    for (i, a) in normals.iter().enumerate() {
+        take(scaled(a, needs[i] / dot(a, a)));
+        for (j, b) in normals.iter().enumerate().take(i) {
+            let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
+            let scale = aa * bb - ab * ab;
+            if scale > 1e-4 {
+                let (alpha, beta) = (
+                    (needs[i] * bb - needs[j] * ab) / scale,
+                    (needs[j] * aa - needs[i] * ab) / scale,
+                );
+                take(add(&scaled(a, alpha), &scaled(b, beta)));
+            }
+        }
+    }
+    if let [a, b, c] = normals {
+        // Cramer's rule.
+        let volume = dot(a, &cross(b, c));
+        let parts = [
+            (cross(b, c), needs[0]),
+            (cross(c, a), needs[1]),
+            (cross(a, b), needs[2]),
+        ];
+        let sum = parts
+            .iter()
+            .fold([0.0; 3], |sum, (part, need)| add(&sum, &scaled(part, *need)));
+        if volume.abs() > 1e-9 {
+            take(scaled(&sum, 1.0 / volume));
+        }
+    }
+    best
+}
+
+/// No point in a cell that is reached during part of a stretch is farther than this from the tip.
+pub(crate) fn lever(run: &Run, cell: &Cell, ends: &[Placement; 2], travel: f64) -> f64 {
+    let middle = scaled(&add(&ends[0].tip, &ends[1].tip), 0.5);
+    let far = norm_up(&sub(&middle, &cell.centre)) + 3_f64.sqrt() * cell.half * MORE;
+    let far = far + travel + ends[0].tip_error + ends[1].tip_error;
+    run.body
+        .reach
+        .min(far * MORE + 1e-12 * crate::vector::size(&cell.centre))
+}

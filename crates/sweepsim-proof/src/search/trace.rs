@@ -1,0 +1,203 @@
+//! What a search leaves behind, so that a checker can follow it: the divisions, and a bound for each pair that was not
+//! divided.
+//!
+//! A node is a byte, and what belongs to it:
+//!
+//! | byte | node |
+//! | --- | --- |
+//! | 0 | The time is divided: two nodes. |
+//! | 1 | The cell is divided. A byte tells which of the eight cells the moving solid may reach; a node for each of these. |
+//! | 2 | The box that the solid sweeps misses the cell. |
+//! | 3 | Nothing of the surface is near the cell, and it is outside of the target. |
+//! | 4 | Bound by the depth of the cell's middle. |
+//! | 5 | A plane separates the solid from the cell: a normal. |
+//! | 6 | The cell, lifted along a normal. |
+//! | 7, 8, 9 | The solid, lifted above one, two or three planes: their normals. |
+//! | 10 | Between two planes: their normals. |
+//!
+//! A normal is a number `k`: 0, and three `f32`; or 1, and the number of a triangle; or that which was written `k − 1`
+//! normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its highest bit set.
+
+use crate::solid::Written;
+use std::collections::HashMap;
+
+/// Why no point in a cell is deeper at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(u8)]
+pub(super) enum Reason {
+    Missed = 2,
+    Outside = 3,
+    Middle = 4,
+    Separated = 5,
+    CellLifted = 6,
+    Lifted = 7,
+    LiftedTwice = 8,
+    LiftedThrice = 9,
+    Slab = 10,
+}
+
+impl Reason {
+    /// How many normals it has.
+    fn normals(self) -> usize {
+        match self {
+            Self::Missed | Self::Outside | Self::Middle => 0,
+            Self::Separated | Self::CellLifted | Self::Lifted => 1,
+            Self::LiftedTwice | Self::Slab => 2,
+            Self::LiftedThrice => 3,
+        }
+    }
+}
+
+/// The normals of a bound, at most three.
+pub(super) type Normals = [Option<Written>; 3];
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    /// No point is deeper.
+    value: f64,
+    reason: Option<Reason>,
+    /// Where its normals begin.
+    normals: u32,
+    divided: Division,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Division {
+    None,
+    /// The number of the first of two.
+    Time(u32),
+    /// That of the first of eight.
+    Cell(u32),
+}
+
+const NODE: Node = Node {
+    value: f64::INFINITY,
+    reason: None,
+    normals: 0,
+    divided: Division::None,
+};
+
+/// The nodes of a search, if it is recorded.
+#[derive(Debug)]
+pub(super) struct Trace {
+    nodes: Option<Vec<Node>>,
+    normals: Vec<Written>,
+}
+
+/// A search with more nodes, of some thirty bytes each, is not recorded.
+const MOST_NODES: usize = 8_000_000;
+
+impl Trace {
+    pub fn new(recorded: bool) -> Self {
+        Self {
+            nodes: recorded.then(|| vec![NODE]),
+            normals: Vec::new(),
+        }
+    }
+
+    /// The bound of a node, if it is better than what is known of it.
+    pub fn bound(&mut self, node: u32, reason: Reason, normals: Normals, value: f64) {
+        let Some(nodes) = &mut self.nodes else { return };
+        let node = &mut nodes[node as usize];
+        if value < node.value {
+            (node.value, node.reason, node.normals) = (value, Some(reason), self.normals.len() as u32);
+            self.normals.extend(normals.iter().flatten());
+        }
+    }
+
+    /// Divides the time of a node: the number of its first part; the second comes after it.
+    pub fn divide_time(&mut self, node: u32) -> u32 {
+        self.divide(node, 2, Division::Time)
+    }
+
+    /// Divides the cell of a node: the number of its first part; the others come after it.
+    pub fn divide_cell(&mut self, node: u32) -> u32 {
+        self.divide(node, 8, Division::Cell)
+    }
+
+    fn divide(&mut self, node: u32, parts: usize, division: impl Fn(u32) -> Division) -> u32 {
+        let Some(nodes) = &mut self.nodes else { return 0 };
+        let first = nodes.len() as u32;
+        if nodes.len() > MOST_NODES {
+            self.nodes = None;
+            return 0;
+        }
+        nodes.extend(std::iter::repeat_n(NODE, parts));
+        nodes[node as usize].divided = division(first);
+        first
+    }
+
+    /// The tree down to where bounds are at most a value, in bytes; none if it was not recorded. `allowance`: of all
+    /// bounds.
+    pub fn written(&self, bound: f64, allowance: f64) -> Vec<u8> {
+        let mut written = Writer::default();
+        let mut open = vec![0_u32];
+        while let (Some(nodes), Some(number)) = (&self.nodes, open.pop()) {
+            let node = &nodes[number as usize];
+            if let Some(reason) = node.reason.filter(|_| node.value + allowance <= bound) {
+                written.bytes.push(reason as u8);
+                let normals = &self.normals[node.normals as usize..];
+                normals[..reason.normals()]
+                    .iter()
+                    .for_each(|normal| written.normal(*normal));
+                continue;
+            }
+            match node.divided {
+                Division::Time(first) => {
+                    written.bytes.push(0);
+                    open.extend([first + 1, first]);
+                }
+                Division::Cell(first) => {
+                    let reached = |part: &u32| nodes[(first + part) as usize].reason != Some(Reason::Missed);
+                    let mask = (0..8).filter(reached).fold(0_u8, |mask, part| mask | 1 << part);
+                    written.bytes.extend([1, mask]);
+                    open.extend((0..8).rev().filter(reached).map(|part| first + part));
+                }
+                // Not bounded: no checker takes it.
+                Division::None => written.bytes.push(Reason::Middle as u8),
+            }
+        }
+        written.bytes
+    }
+}
+
+#[derive(Default)]
+struct Writer {
+    bytes: Vec<u8>,
+    /// When each normal was written last.
+    known: HashMap<[u32; 4], usize>,
+    normals: usize,
+}
+
+impl Writer {
+    fn normal(&mut self, normal: Written) {
+        let key = match normal {
+            Written::OfTriangle(number) => [1, number, 0, 0],
+            Written::Given(short) => {
+                let [x, y, z] = short.map(f32::to_bits);
+                [0, x, y, z]
+            }
+        };
+        let before = self.known.insert(key, self.normals);
+        match (before, normal) {
+            (Some(before), _) => self.number(1 + self.normals - before),
+            (None, Written::OfTriangle(number)) => {
+                self.number(1);
+                self.number(number as usize);
+            }
+            (None, Written::Given(short)) => {
+                self.number(0);
+                self.bytes.extend(short.iter().flat_map(|c| c.to_le_bytes()));
+            }
+        }
+        self.normals += 1;
+    }
+
+    fn number(&mut self, mut number: usize) {
+        while number > 0x7f {
+            self.bytes.push(number as u8 | 0x80);
+            number >>= 7;
+        }
+        self.bytes.push(number as u8);
+    }
+}
