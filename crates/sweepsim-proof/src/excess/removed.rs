@@ -217,6 +217,16 @@ fn stays_away(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f6
 /// The same along a straight stretch. There the level is convex: its least value is in the interval that is left.
 fn stays_beside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
     let of = |time: f64| level_at(level, &stretch.at(time), point);
+    // It is never nearer to the axis than this, and its height along it changes evenly: by little, on most stretches.
+    let [start, end] = &stretch.ends;
+    let (off, way) = (point - start.tip, end.tip - start.tip);
+    let rise = way.dot(&start.axis);
+    let [off_across, way_across] = [off, way].map(|v| v - start.axis * v.dot(&start.axis));
+    let part = off_across.dot(&way_across) / way_across.norm_squared().max(f64::MIN_POSITIVE);
+    let nearest = (off_across - way_across * part.clamp(0.0, 1.0)).norm();
+    if level.at([nearest, off.dot(&start.axis) - 0.5 * rise]) > 0.5 * rise.abs() + margin {
+        return true;
+    }
     let (mut from, mut to, mut least) = (0.0, 1.0, quick(level, stretch, point).0);
     for _ in 0..4 * STEPS {
         if least <= margin {

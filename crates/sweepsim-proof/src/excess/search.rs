@@ -34,7 +34,7 @@ const SHARE: f64 = 1.0 / 64.0;
 /// The surface is divided into at least so many patches, so that all threads have work.
 const PARTS: f64 = 512.0;
 /// At first, so many parts of every patch are looked at.
-const FIRST_LOOK: usize = 64;
+const LOOKS: [usize; 2] = [4, 64];
 /// Patches smaller than this part of the distance are not divided.
 const FINEST: f64 = 1e-3;
 /// As many open places are described, of each part of the surface.
@@ -206,9 +206,12 @@ impl Scene<'_> {
     ) -> Option<Found> {
         let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
-        // A first look everywhere, then what is left.
-        for most in [FIRST_LOOK, patches] {
-            let each = FIRST_LOOK.max(most / open.len().max(1));
+        // Short looks everywhere, then what is left.
+        for look in 0..=LOOKS.len() {
+            let each = match LOOKS.get(look) {
+                Some(each) => *each,
+                None => LOOKS[LOOKS.len() - 1].max(patches / open.len().max(1)),
+            };
             let (done, total) = (AtomicUsize::new(0), open.len());
             let look = |number: &usize| {
                 if monitor.cancelled() {

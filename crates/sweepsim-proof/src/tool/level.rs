@@ -42,7 +42,7 @@ impl Level {
             let off = [point[0] - arc.centre[0], point[1] - arc.centre[1]];
             let [from, to] = arc.normals;
             if from[0] * off[1] - from[1] * off[0] >= 0.0 && off[0] * to[1] - off[1] * to[0] >= 0.0 {
-                level = level.max(off[0].hypot(off[1]) - arc.radius);
+                level = level.max((off[0] * off[0] + off[1] * off[1]).sqrt() - arc.radius);
             }
         }
         level

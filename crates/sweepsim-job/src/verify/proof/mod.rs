@@ -1,13 +1,19 @@
 //! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
 
+mod bodies;
+mod excess;
+mod solids;
+
 use super::targets;
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::session::Session;
 use std::collections::BTreeMap;
-use sweepsim_formats::{Job, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict};
-use sweepsim_proof::{Convex, Cutter, Enclosed, Fault, Limits, OpenBox, Target, Witness, cover, deepest};
+use sweepsim_formats::{
+    Job, JobPath, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
+};
+use sweepsim_proof::{Convex, Cutter, Enclosed, Limits, OpenBox, Target, Witness, cover, deepest};
 
 /// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
 const WIDTH: f64 = 0.1;
@@ -16,110 +22,128 @@ const CHORDS: f64 = 0.01;
 /// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
 const PAIRS: usize = 500_000;
 const PAIRS_OF_MOVE: usize = 400;
-/// As many faults of the target are named.
-const FAULTS: usize = 3;
 /// As many open places are listed.
 const LISTED: usize = 100;
 
 /// A statement with the moves that were seen to break it.
-pub(super) struct Proven {
-    pub statement: Statement,
-    pub findings: Vec<ReportedFinding>,
+struct Proven {
+    statement: Statement,
+    findings: Vec<ReportedFinding>,
 }
 
-/// What is proven of gouges; nothing without a target.
-pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Option<Proven>, JobError> {
-    let job = session.job;
-    let Some(target) = &job.target else {
-        return Ok(None);
-    };
-    let [least, most] = limits(job);
-    let mut statement = Statement::new("gouge", least);
-    let solid = match Target::new(&target.mesh) {
-        Ok(solid) if target.mesh.volume() > 0.0 => solid,
-        Ok(_) => {
-            statement.reason = Some("the target is inside out".to_owned());
-            return Ok(Some(Proven::open(statement)));
-        }
-        Err(error) => {
-            statement.reason = Some(format!("the target is no solid: {error}"));
-            return Ok(Some(Proven::open(statement)));
-        }
-    };
+/// What is proven, and what was seen to break it but not on the lines. `seen`: what was found on these, and whether
+/// material was left.
+pub(super) fn statements(
+    session: Session,
+    texts: &mut ProgramTexts,
+    (seen, is_left): (&[ReportedFinding], bool),
+) -> Result<(Vec<Statement>, Vec<ReportedFinding>), JobError> {
     session.phase("proof");
-    if let Some(reason) = faulty(&solid) {
-        statement.reason = Some(reason);
-        return Ok(Some(Proven::open(statement)));
+    let job = session.job;
+    let mut all = Vec::new();
+    if let Some(target) = &job.target {
+        let solid = solids::of_mesh(&target.mesh, "the target");
+        all.push(gouges(session, texts, &solid)?);
+        if super::directions::compared(session) {
+            all.push(excess::excess(session, &solid, is_left)?);
+        }
+        all.extend(bodies::beside_target(session, texts, &solid)?);
     }
-    let cutters: BTreeMap<u32, Vec<Convex>> = job
-        .tools
-        .iter()
-        .map(|(number, tool)| (*number, cover(tool, CHORDS * least)))
-        .collect();
-    let cutters: Vec<Cutter> = job
-        .paths
-        .iter()
-        .map(|path| Cutter {
-            solids: &cutters[&path.tool],
-            path: &path.path,
-            others: Some(&path.other_courses),
-        })
-        .collect();
+    all.extend(bodies::beside_fixtures(session, texts)?);
+    let (mut statements, mut findings) = (Vec::new(), Vec::new());
+    for Proven {
+        statement,
+        findings: own,
+    } in all
+    {
+        // What the lines have seen is known better from them.
+        let is_new = |own: &ReportedFinding| {
+            let same = |other: &ReportedFinding| {
+                other.kind == own.kind && (other.path, other.r#move) == (own.path, own.r#move)
+            };
+            !seen.iter().any(same)
+        };
+        findings.extend(own.into_iter().filter(is_new));
+        statements.push(with_lines(statement, seen));
+    }
+    Ok((statements, findings))
+}
+
+/// What cutters cut with, as solids.
+fn cutters(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
+    let tools = job.tools.iter();
+    tools.map(|(number, tool)| (*number, cover(tool, tolerance))).collect()
+}
+
+/// Solids along the paths of a job.
+fn along<'a>(job: &'a Job, solids: &'a BTreeMap<u32, Vec<Convex>>) -> Vec<Cutter<'a>> {
+    let cutter = |path: &'a JobPath| Cutter {
+        solids: solids.get(&path.tool).map_or(&[][..], Vec::as_slice),
+        path: &path.path,
+        others: Some(&path.other_courses),
+    };
+    job.paths.iter().map(cutter).collect()
+}
+
+fn pairs(job: &Job) -> usize {
+    PAIRS + PAIRS_OF_MOVE * job.moves()
+}
+
+/// What is proven of gouges.
+fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, String>) -> Result<Proven, JobError> {
+    let job = session.job;
+    let [least, most] = limits(job, |[gouge, _]| gouge);
+    let mut statement = Statement::new("gouge", least);
+    let solid = match solid {
+        Ok(solid) => solid,
+        Err(reason) => {
+            statement.reason = Some(reason.clone());
+            return Ok(Proven::open(statement));
+        }
+    };
+    let cutters = cutters(job, CHORDS * least);
     let wanted = Limits {
         depth: least,
         width: WIDTH * least,
-        pairs: PAIRS + PAIRS_OF_MOVE * job.moves(),
+        pairs: pairs(job),
     };
-    let found = deepest(&solid, &cutters, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
+    let found = deepest(solid, &along(job, &cutters), &wanted, session.monitor).ok_or(JobError::Cancelled)?;
+    let findings = deep(job, texts, &mut statement, &found, most);
+    let between = statement.state == StatementState::Open && statement.enclosure[0] > least;
+    if between {
+        statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
+    }
+    Ok(Proven { statement, findings })
+}
+
+/// What is known of depths, in a statement about them; and the moves that go beyond `most`, if it is refuted by that.
+fn deep(
+    job: &Job,
+    texts: &mut ProgramTexts,
+    statement: &mut Statement,
+    found: &Enclosed,
+    most: f64,
+) -> Vec<ReportedFinding> {
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     statement.enclosure = [known, found.bound];
-    statement.state = if found.bound <= least {
+    statement.state = if found.bound <= statement.limit {
         StatementState::Proven
     } else if known > most {
         StatementState::Refuted
     } else {
         StatementState::Open
     };
-    if statement.state == StatementState::Open && known > least {
-        statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
-    }
     let witness = found.deepest.as_ref();
     statement.witness = witness.map(|(path, witness)| described(job, texts, *path, witness));
     statement.open_count = found.open_count;
-    statement.open = found
-        .open
-        .iter()
-        .take(LISTED)
-        .map(|(path, open)| place(job, texts, *path, open))
-        .collect();
-    let findings = if statement.state == StatementState::Refuted {
-        beyond(job, texts, &found, most)
-    } else {
-        Vec::new()
-    };
-    Ok(Some(Proven { statement, findings }))
-}
-
-/// What is wrong with the triangles of a target, with some of the places.
-fn faulty(solid: &Target) -> Option<String> {
-    let faults = solid.faults(FAULTS + 1);
-    if faults.is_empty() {
-        return None;
+    let open = found.open.iter().take(LISTED);
+    statement.open = open.map(|(path, open)| place(job, texts, *path, open)).collect();
+    if statement.state != StatementState::Refuted {
+        return Vec::new();
     }
-    let place = |fault: &Fault| {
-        let (what, at) = match fault {
-            Fault::Doubled(at) => ("has a face twice", at),
-            Fault::Crossing(at) => ("intersects itself", at),
-            _ => return "is no solid".to_owned(),
-        };
-        let [x, y, z] = at.map(|c| format!("{c:.3}"));
-        format!("{what} at ({x}, {y}, {z})")
-    };
-    let mut named: Vec<String> = faults.iter().take(FAULTS).map(place).collect();
-    if faults.len() > FAULTS {
-        named.push("…".to_owned());
-    }
-    Some(format!("the target {}", named.join(", ")))
+    let deep = found.moves.iter().filter(|(_, witness)| witness.depth > most);
+    deep.map(|(path, witness)| finding(job, texts, &statement.about, *path, witness))
+        .collect()
 }
 
 impl Proven {
@@ -131,23 +155,27 @@ impl Proven {
     }
 }
 
-/// The least and the largest depth that is allowed somewhere.
-fn limits(job: &Job) -> [f64; 2] {
+/// The least and the largest of the limits that are allowed somewhere, of gouges or of excess.
+fn limits(job: &Job, of: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
     let own = job.limits.as_ref();
-    let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
-    let regions = own
-        .into_iter()
-        .flat_map(|limits| &limits.regions)
-        .map(|region| region.gouge);
-    let floor = 2.0 * job.tolerance;
-    regions.fold([general.max(floor); 2], |[least, most], limit| {
-        [least.min(limit.max(floor)), most.max(limit.max(floor))]
-    })
+    let general = own.map_or([targets::LIMIT; 2], |limits| [limits.gouge, limits.excess]);
+    let regions = own.into_iter().flat_map(|limits| &limits.regions);
+    let regions = regions.map(|region| [region.gouge, region.excess]);
+    let mut all = std::iter::once(general)
+        .chain(regions)
+        .map(|limits| of(limits).max(floor(job)));
+    let first = all.next().unwrap_or(targets::LIMIT);
+    all.fold([first; 2], |[least, most], limit| [least.min(limit), most.max(limit)])
+}
+
+/// Below the tolerance of the dexels there is nothing to judge.
+fn floor(job: &Job) -> f64 {
+    2.0 * job.tolerance
 }
 
 fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness) -> StatementWitness {
     let mut described = StatementWitness::default();
-    (described.path, described.r#move) = (path, witness.number);
+    (described.path, described.r#move) = (Some(path), Some(witness.number));
     (described.time, described.place) = (witness.time, witness.place);
     if let Some((file, line)) = work::place(&job.paths[path], witness.number, &texts.folder) {
         described.text = texts.line(&file, line);
@@ -158,7 +186,7 @@ fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness
 
 fn place(job: &Job, texts: &ProgramTexts, path: usize, open: &OpenBox) -> OpenPlace {
     let mut place = OpenPlace::default();
-    (place.path, place.r#move) = (path, open.first.0);
+    (place.path, place.r#move) = (Some(path), Some(open.first.0));
     place.time = [open.first.1, open.last.1];
     let ([a, b, c], [d, e, f]) = (open.low, open.high);
     place.r#box = [a, b, c, d, e, f];
@@ -168,45 +196,49 @@ fn place(job: &Job, texts: &ProgramTexts, path: usize, open: &OpenBox) -> OpenPl
     place
 }
 
-/// The moves that were seen to go deeper than the limit.
-fn beyond(job: &Job, texts: &mut ProgramTexts, found: &Enclosed, limit: f64) -> Vec<ReportedFinding> {
-    let deep = found.moves.iter().filter(|(_, witness)| witness.depth > limit);
-    deep.map(|(number, witness)| {
-        let path = &job.paths[*number];
-        let mut finding = ReportedFinding::default();
-        finding.kind = "gouge".to_owned();
-        finding.between = true;
-        (finding.tool, finding.path, finding.r#move) = (Some(path.tool), Some(*number), Some(witness.number));
-        finding.setup = job.has_setups.then_some(path.setup);
-        if let Some((file, line)) = work::place(path, witness.number, &texts.folder) {
-            finding.text = texts.line(&file, line);
-            (finding.file, finding.line) = (Some(file), Some(line));
-        }
-        finding.time = Some(witness.time);
-        (finding.place, finding.depth) = (witness.place, witness.depth);
-        finding
-    })
-    .collect()
+/// A move that breaks a statement.
+fn finding(job: &Job, texts: &mut ProgramTexts, kind: &str, number: usize, witness: &Witness) -> ReportedFinding {
+    let path = &job.paths[number];
+    let mut finding = ReportedFinding::default();
+    finding.kind = kind.to_owned();
+    finding.between = true;
+    (finding.tool, finding.path, finding.r#move) = (Some(path.tool), Some(number), Some(witness.number));
+    finding.setup = job.has_setups.then_some(path.setup);
+    if let Some((file, line)) = work::place(path, witness.number, &texts.folder) {
+        finding.text = texts.line(&file, line);
+        (finding.file, finding.line) = (Some(file), Some(line));
+    }
+    finding.time = Some(witness.time);
+    (finding.place, finding.depth) = (witness.place, witness.depth);
+    finding
 }
 
 /// The same statement, if what was found on the lines refutes it.
-pub(super) fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Statement {
-    let gouges = findings.iter().filter(|finding| finding.kind == "gouge");
-    let Some(deepest) = gouges.max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
+fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Statement {
+    // Collisions are with the workpiece as it is at that time, which may have more than the target.
+    if statement.state != StatementState::Open || !["gouge", "fixture"].contains(&statement.about.as_str()) {
+        return statement;
+    }
+    let own = findings
+        .iter()
+        .filter(|finding| finding.kind == statement.about && !finding.near);
+    let Some(deepest) = own.max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
         return statement;
     };
-    if statement.state == StatementState::Open {
-        statement.state = StatementState::Refuted;
-        // On a line, the cutter is where no cutter may be: deeper than the limit, by how much is not said.
-        statement.enclosure[0] = statement.enclosure[0].max(statement.limit);
-        statement.reason = None;
-        let mut witness = StatementWitness::default();
-        (witness.path, witness.r#move) = (deepest.path.unwrap_or_default(), deepest.r#move.unwrap_or_default());
-        (witness.file, witness.line) = (deepest.file.clone(), deepest.line);
-        (witness.text, witness.place) = (deepest.text.clone(), deepest.place);
-        witness.time = deepest.time.unwrap_or_default();
-        statement.witness = Some(witness);
+    statement.state = StatementState::Refuted;
+    // On a line, something is where it may not be: beyond the limit, by how much is not said.
+    match statement.measure {
+        Measure::Distance => statement.enclosure = [0.0; 2],
+        _ => statement.enclosure[0] = statement.enclosure[0].max(statement.limit),
     }
+    statement.reason = None;
+    let mut witness = StatementWitness::default();
+    (witness.path, witness.r#move) = (deepest.path, deepest.r#move);
+    (witness.file, witness.line) = (deepest.file.clone(), deepest.line);
+    (witness.text, witness.place) = (deepest.text.clone(), deepest.place);
+    witness.time = deepest.time.unwrap_or_default();
+    witness.body.clone_from(&deepest.body);
+    statement.witness = Some(witness);
     statement
 }
 
