@@ -15,8 +15,8 @@ const CUTTER = rgb("#e8b04a");
 /** Tools, by number. */
 const TOOLS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442", "#8c6bb1"].map(rgb);
 
-/** Kinds of findings. */
-const KINDS = { collision: "#c2410c", rapid: "#9333a8", fixture: "#b45309", gouge: "#be123c", excess: "#1d4ed8" };
+/** Kinds of findings, and states of proofs. */
+const KINDS = { collision: "#c2410c", rapid: "#9333a8", fixture: "#b45309", gouge: "#be123c", excess: "#1d4ed8", proven: "#0f6b4f", refuted: "#a3160f", open: "#7a4a00" };
 const OTHER_KIND = "#475569";
 
 /** Multiples of the limits, and the colours between them: too deep on the left, too much left on the right. */

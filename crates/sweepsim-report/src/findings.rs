@@ -25,7 +25,8 @@ pub struct Excerpt {
 pub struct Finding {
     /// What it is, for people: `Collision of the holder`.
     pub title: String,
-    /// Its kind in one word, for the colour: `collision`, `rapid`, `fixture`, `gouge`, `excess` …
+    /// Its kind in one word, for the colour: `collision`, `rapid`, `fixture`, `gouge`, `excess` …; of a proof `proven`,
+    /// `refuted` or `open`.
     pub kind: String,
     /// Where, in the world.
     pub place: [f64; 3],
@@ -45,20 +46,34 @@ pub(crate) struct Marker<'a> {
     clock: Option<f64>,
 }
 
-/// The listed findings for the scripts; places that are not finite are at the origin.
-pub(crate) fn markers<'a>(findings: &'a [Finding]) -> Vec<Marker<'a>> {
+/// The listed findings and proofs for the scripts; places that are not finite are at the origin.
+pub(crate) fn markers<'a>(findings: &'a [Finding], proofs: &'a [Finding]) -> Vec<Marker<'a>> {
     let marker = |finding: &'a Finding| Marker {
         kind: &finding.kind,
         place: finding.place.map(|c| if c.is_finite() { c } else { 0.0 }),
         clock: finding.clock.filter(|clock| clock.is_finite()),
     };
-    findings.iter().take(LISTED).map(marker).collect()
+    let listed = findings.iter().take(LISTED).chain(proofs.iter().take(LISTED));
+    listed.map(marker).collect()
 }
 
-/// The list. Every finding is a button with its details below.
-pub(crate) fn list(html: &mut String, findings: &[Finding]) {
+/// The lists of findings and of proofs. Every one is a button with its details below.
+pub(crate) fn lists(html: &mut String, findings: &[Finding], proofs: &[Finding]) {
+    for (title, listed, first) in [
+        ("Findings", findings, 0),
+        ("Proofs", proofs, findings.len().min(LISTED)),
+    ] {
+        if !listed.is_empty() {
+            let _ = writeln!(html, "<h2>{title} <span class=\"count\">{}</span></h2>", listed.len());
+            list(html, listed, first);
+        }
+    }
+}
+
+/// A list. `first`: the number of the first, for the scripts.
+fn list(html: &mut String, findings: &[Finding], first: usize) {
     html.push_str("<ol class=\"findings\">\n");
-    for (number, finding) in findings.iter().take(LISTED).enumerate() {
+    for (number, finding) in (first..).zip(findings.iter().take(LISTED)) {
         let line = finding.excerpt.as_ref().map_or(String::new(), |excerpt| {
             format!("{}:{}", escape(&excerpt.file), excerpt.line)
         });

@@ -104,6 +104,8 @@ pub struct Page {
     pub verdict: Option<Verdict>,
     /// What was found, in the program's order.
     pub findings: Vec<Finding>,
+    /// What is proven everywhere, refuted or open: each with the place where its extreme is, or a place that is open.
+    pub proofs: Vec<Finding>,
     /// The most important figures.
     pub facts: Vec<Fact>,
     /// Quantities along the program.
@@ -156,7 +158,7 @@ impl Page {
             script.push_str(source);
         }
         script.push_str("})();\n</script>\n</body>\n</html>\n");
-        let marks = json(&findings::markers(&self.findings));
+        let marks = json(&findings::markers(&self.findings, &self.proofs));
         let words = head.len() + before.len() + after.len() + script.len() + marks.len();
         // The markup of the viewer and the description of the arrays are small beside this.
         const SPARE: usize = 100_000;
@@ -220,19 +222,15 @@ impl Page {
             html.push_str("</div></div>\n");
         }
         html.push_str("</header>\n<main>\n");
-        let class = if self.findings.is_empty() {
+        let class = if self.findings.is_empty() && self.proofs.is_empty() {
             "stage"
         } else {
             "stage with-findings"
         };
         let _ = writeln!(html, "<div class=\"{class}\">");
-        if !self.findings.is_empty() {
-            let _ = writeln!(
-                html,
-                "<section class=\"list\" aria-label=\"Findings\"><h2>Findings <span class=\"count\">{}</span></h2>",
-                self.findings.len()
-            );
-            findings::list(&mut html, &self.findings);
+        if !(self.findings.is_empty() && self.proofs.is_empty()) {
+            html.push_str("<section class=\"list\" aria-label=\"Findings and proofs\">");
+            findings::lists(&mut html, &self.findings, &self.proofs);
             html.push_str("</section>\n");
         }
         html

@@ -3,6 +3,7 @@
 mod course;
 mod deviation;
 mod program;
+mod proofs;
 mod solids;
 mod tables;
 mod verdict;
@@ -62,6 +63,7 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     page.verdict = verdict::verdict(report);
     let clock = |path: usize, number: usize, time: f64| made.clock(path, number, time);
     page.findings = verdict::findings(report, &programs, &clock);
+    page.proofs = proofs::proofs(report, &programs, &clock);
     page.facts = facts(source);
     page.plots = plots(source, &made);
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));

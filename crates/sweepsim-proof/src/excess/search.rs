@@ -35,6 +35,8 @@ const SHARE: f64 = 1.0 / 64.0;
 const PARTS: f64 = 512.0;
 /// At first, so many parts of every patch are looked at.
 const LOOKS: [usize; 2] = [4, 64];
+/// As many looks in all: in later ones, what is left of the patches is for what is left of the surface.
+const MOST_LOOKS: usize = 6;
 /// Patches smaller than this part of the distance are not divided.
 const FINEST: f64 = 1e-3;
 /// As many open places are described, of each part of the surface.
@@ -57,7 +59,6 @@ pub fn highest(
     limits: &Limits,
     monitor: &dyn Monitor,
 ) -> Result<Option<Left>, MeshError> {
-    let before = Before::new(stock)?;
     let mut size = target.size;
     let mut motions = Vec::with_capacity(cutters.len());
     for cutter in cutters {
@@ -81,7 +82,7 @@ pub fn highest(
     };
     let scene = Scene {
         target,
-        before,
+        before: Before::new(stock, 2.0 * removed.margin)?,
         removed,
         patches: parts(Patch::around(&target.triangles)),
     };
@@ -207,11 +208,15 @@ impl Scene<'_> {
         let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
         // Short looks everywhere, then what is left.
-        for look in 0..=LOOKS.len() {
+        let mut left = patches;
+        for look in 0..MOST_LOOKS {
             let each = match LOOKS.get(look) {
                 Some(each) => *each,
-                None => LOOKS[LOOKS.len() - 1].max(patches / open.len().max(1)),
+                None => left / open.len().max(1),
             };
+            if open.is_empty() || each < LOOKS[look.min(LOOKS.len() - 1)] {
+                break;
+            }
             let (done, total) = (AtomicUsize::new(0), open.len());
             let look = |number: &usize| {
                 if monitor.cancelled() {
@@ -232,6 +237,7 @@ impl Scene<'_> {
                 Some(search.found)
             };
             let again: Vec<Found> = open.par_iter().map(look).collect::<Option<_>>()?;
+            left = left.saturating_sub(again.iter().map(|found| found.patches).sum());
             for (number, mut again) in open.iter().zip(again) {
                 again.patches += found[*number].patches;
                 found[*number] = again;
@@ -278,12 +284,17 @@ impl Search<'_> {
             };
             self.found.patches += 1;
             let scene = self.scene;
-            if scene.before.misses(&points, &middle, &patch.middle().1) {
+            let count = points.len();
+            let points = scene.before.within(points, &middle, &patch.middle().1);
+            if points.is_empty() {
                 continue;
             }
-            let (held, is_removed) = scene.removed.held(&points, &middle);
+            let (mut held, is_removed) = scene.removed.held(&points, &middle);
             if !held.contains(&false) || self.is_near(&points, &middle) {
                 continue;
+            }
+            if points.len() != count {
+                held.clear();
             }
             if !is_removed && scene.is_left(&middle) {
                 let height = scene.height(&middle) - scene.removed.margin;

@@ -1,10 +1,18 @@
 //! What there was before the first cut.
 
+use super::surface::Points;
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 use sweepsim_dexel::{DistanceTo, MeshError, Stock};
 
-/// A stock, prepared for what is asked of it here.
-pub(super) enum Before {
+/// A stock, prepared for what is asked of it here: without its skin, so that what ends on its surface is beside it.
+pub(super) struct Before {
+    shape: Shape,
+    /// How thick the skin is: far below any tolerance.
+    skin: f64,
+}
+
+enum Shape {
     Block([Vector3<f64>; 2]),
     Cylinder {
         base: Vector3<f64>,
@@ -22,7 +30,51 @@ pub(super) enum Before {
 }
 
 impl Before {
-    pub fn new(stock: &Stock) -> Result<Self, MeshError> {
+    pub fn new(stock: &Stock, skin: f64) -> Result<Self, MeshError> {
+        let shape = Shape::new(stock)?;
+        Ok(Self { shape, skin })
+    }
+
+    /// Points whose hull has all of the stock that is in the hull of some points. `middle`: a point among them; `normal`:
+    /// a direction away from the stock, if they are beside it.
+    pub fn within(&self, mut points: Points, middle: &Vector3<f64>, normal: &Vector3<f64>) -> Points {
+        if self.shape.misses(&points, (middle, normal), self.skin) {
+            points.clear();
+        }
+        if let Shape::Block([low, high]) | Shape::Within([low, high]) = &self.shape {
+            for k in 0..3 {
+                points = below(points, |point| point[k] - (high[k] - self.skin));
+                points = below(points, |point| low[k] + self.skin - point[k]);
+            }
+        }
+        points
+    }
+
+    /// Whether a point is in it, for certain.
+    pub fn holds(&self, point: &Vector3<f64>) -> bool {
+        self.shape.holds(point)
+    }
+}
+
+/// Points whose hull is what of the hull of some points is below a plane. `above`: how far one is above it.
+fn below(points: Points, above: impl Fn(&Vector3<f64>) -> f64) -> Points {
+    let heights: SmallVec<[f64; 12]> = points.iter().map(&above).collect();
+    if heights.iter().all(|height| *height <= 0.0) {
+        return points;
+    }
+    let of_sign = |is_above: bool| {
+        let all = points.iter().zip(&heights);
+        all.filter(move |(_, height)| (**height > 0.0) == is_above)
+    };
+    let mut kept: Points = of_sign(false).map(|(point, _)| *point).collect();
+    for (a, u) in of_sign(false) {
+        kept.extend(of_sign(true).map(|(b, v)| a + (b - a) * (-u / (v - u))));
+    }
+    kept
+}
+
+impl Shape {
+    fn new(stock: &Stock) -> Result<Self, MeshError> {
         let all = |parts: &[Stock]| parts.iter().map(Self::new).collect::<Result<Vec<_>, _>>();
         Ok(match stock {
             Stock::Block { min, max } => Self::Block([(*min).into(), (*max).into()]),
@@ -50,18 +102,17 @@ impl Before {
         })
     }
 
-    /// Whether none of it is in the hull of some points, for certain. `middle`: a point among them; `normal`: a
-    /// direction away from the stock, if they are beside it.
-    pub fn misses(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
+    fn misses(&self, points: &[Vector3<f64>], (middle, normal): (&Vector3<f64>, &Vector3<f64>), skin: f64) -> bool {
         let least = |direction: &Vector3<f64>| {
             let values = points.iter().map(|point| point.dot(direction));
-            values.fold(f64::INFINITY, f64::min)
+            values.fold(f64::INFINITY, f64::min) + skin
         };
         match self {
             Self::Block([low, high]) | Self::Within([low, high]) => {
                 let farthest = low.zip_zip_map(high, normal, |low, high, n| n * if n < 0.0 { low } else { high });
                 let beyond = |k: usize| {
-                    points.iter().all(|point| point[k] > high[k]) || points.iter().all(|point| point[k] < low[k])
+                    let all = || points.iter().map(|point| point[k]);
+                    all().all(|c| c + skin > high[k]) || all().all(|c| c - skin < low[k])
                 };
                 least(normal) > farthest.sum() || (0..3).any(beyond)
             }
@@ -88,18 +139,17 @@ impl Before {
                 let size = points.iter().map(|point| (point - middle).norm());
                 let size = size.fold(0.0, f64::max);
                 let nearest = distance.nearest((*middle).into());
-                nearest.is_none_or(|nearest| nearest.distance > size * (1.0 + 1e-9) + 1e-12)
+                nearest.is_none_or(|nearest| nearest.distance + skin > size * (1.0 + 1e-9) + 1e-12)
             }
-            Self::Union(parts) => parts.iter().all(|part| part.misses(points, middle, normal)),
+            Self::Union(parts) => parts.iter().all(|part| part.misses(points, (middle, normal), skin)),
             Self::Intersection(parts) => {
-                parts.is_empty() || parts.iter().any(|part| part.misses(points, middle, normal))
+                parts.is_empty() || parts.iter().any(|part| part.misses(points, (middle, normal), skin))
             }
-            Self::Difference(whole, _) => whole.misses(points, middle, normal),
+            Self::Difference(whole, _) => whole.misses(points, (middle, normal), skin),
         }
     }
 
-    /// Whether a point is in it, for certain.
-    pub fn holds(&self, point: &Vector3<f64>) -> bool {
+    fn holds(&self, point: &Vector3<f64>) -> bool {
         match self {
             Self::Block([low, high]) => (0..3).all(|k| point[k] > low[k] && point[k] < high[k]),
             Self::Cylinder {
@@ -121,7 +171,10 @@ impl Before {
             Self::Union(parts) => parts.iter().any(|part| part.holds(point)),
             Self::Intersection(parts) => !parts.is_empty() && parts.iter().all(|part| part.holds(point)),
             Self::Difference(whole, parts) => {
-                whole.holds(point) && parts.iter().all(|part| part.misses(&[*point], point, &Vector3::z()))
+                whole.holds(point)
+                    && parts
+                        .iter()
+                        .all(|part| part.misses(&[*point], (point, &Vector3::z()), 0.0))
             }
         }
     }

@@ -11,7 +11,8 @@ use smallvec::SmallVec;
 use std::collections::HashMap;
 
 type Vectors = SmallVec<[Vector3<f64>; 3]>;
-type Points = SmallVec<[Vector3<f64>; 12]>;
+/// A few points.
+pub(super) type Points = SmallVec<[Vector3<f64>; 12]>;
 
 /// The points from a corner, an edge or a triangle along directions between some normals.
 #[derive(Clone, Debug)]
@@ -198,7 +199,7 @@ impl Patch {
         if self.normals.len() > 3 || length >= d * angle && !is_wide {
             let of_corner = |corner: usize| {
                 let each = held.len() / self.corners.len();
-                held[corner * each..(corner + 1) * each].iter().all(|held| *held)
+                each > 0 && held[corner * each..(corner + 1) * each].iter().all(|held| *held)
             };
             let is_held: SmallVec<[bool; 3]> = (0..self.corners.len()).map(of_corner).collect();
             let area = match self.corners[..] {
