@@ -1,5 +1,6 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
+use super::certificate::Certified;
 use super::texts::ProgramTexts;
 use super::{axes, proof, targets, work};
 use crate::base::JobError;
@@ -13,7 +14,7 @@ pub(super) fn describe(
     session: Session,
     done: &Judgement,
     found: Option<&Deviations>,
-) -> Result<(), JobError> {
+) -> Result<Vec<Certified>, JobError> {
     let job = session.job;
     let mut texts = ProgramTexts::new(session);
     let mut findings: Vec<ReportedFinding> = done
@@ -22,7 +23,7 @@ pub(super) fn describe(
         .map(|finding| reported(finding, job, &mut texts))
         .collect();
     findings.extend(axes::findings(job, report, &mut texts));
-    let mut statements = Vec::new();
+    let (mut statements, mut certified) = (Vec::new(), Vec::new());
     if session.request.judging.proof && !done.stopped {
         let gouges = phase(report, "proof", || proof::gouges(session, &mut texts))?;
         if let Some(proven) = gouges {
@@ -34,6 +35,7 @@ pub(super) fn describe(
             let new: Vec<_> = proven.findings.into_iter().filter(|own| !seen(own)).collect();
             let statement = proof::with_lines(proven.statement, &findings);
             findings.extend(new);
+            certified.extend(proven.certified);
             statements.push(statement);
         }
         report.statements = Some(statements.clone());
@@ -100,7 +102,7 @@ pub(super) fn describe(
     };
     report.verdict = Some(proof::verdict(on_lines, &statements));
     report.findings = Some(findings);
-    Ok(())
+    Ok(certified)
 }
 
 fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedFinding {

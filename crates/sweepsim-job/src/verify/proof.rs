@@ -1,21 +1,14 @@
 //! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
 
+use super::certificate::{Asked, Certified};
 use super::targets;
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::session::Session;
-use std::collections::BTreeMap;
 use sweepsim_formats::{Job, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict};
-use sweepsim_proof::{Convex, Cutter, Enclosed, Fault, Limits, OpenBox, Target, Witness, cover, deepest};
+use sweepsim_proof::{Enclosed, Fault, OpenBox, Target, Witness, deepest_recorded};
 
-/// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
-const WIDTH: f64 = 0.1;
-/// Concave outlines are replaced by chords within this part of the limit.
-const CHORDS: f64 = 0.01;
-/// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
-const PAIRS: usize = 500_000;
-const PAIRS_OF_MOVE: usize = 400;
 /// As many faults of the target are named.
 const FAULTS: usize = 3;
 /// As many open places are listed.
@@ -25,6 +18,8 @@ const LISTED: usize = 100;
 pub(super) struct Proven {
     pub statement: Statement,
     pub findings: Vec<ReportedFinding>,
+    /// For whoever wants to check it.
+    pub certified: Option<Certified>,
 }
 
 /// What is proven of gouges; nothing without a target.
@@ -51,26 +46,11 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
         statement.reason = Some(reason);
         return Ok(Some(Proven::open(statement)));
     }
-    let cutters: BTreeMap<u32, Vec<Convex>> = job
-        .tools
-        .iter()
-        .map(|(number, tool)| (*number, cover(tool, CHORDS * least)))
-        .collect();
-    let cutters: Vec<Cutter> = job
-        .paths
-        .iter()
-        .map(|path| Cutter {
-            solids: &cutters[&path.tool],
-            path: &path.path,
-            others: Some(&path.other_courses),
-        })
-        .collect();
-    let wanted = Limits {
-        depth: least,
-        width: WIDTH * least,
-        pairs: PAIRS + PAIRS_OF_MOVE * job.moves(),
-    };
-    let found = deepest(&solid, &cutters, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
+    let asked = Asked::new(job);
+    let cutters = asked.cutters(job);
+    let own: Vec<_> = cutters.iter().map(|(_, cutter)| *cutter).collect();
+    let found = deepest_recorded(&solid, &own, &asked.limits, session.monitor).ok_or(JobError::Cancelled)?;
+    let certified = Certified::new(job, &solid, &asked, &found);
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     statement.enclosure = [known, found.bound];
     statement.state = if found.bound <= least {
@@ -97,7 +77,11 @@ pub(super) fn gouges(session: Session, texts: &mut ProgramTexts) -> Result<Optio
     } else {
         Vec::new()
     };
-    Ok(Some(Proven { statement, findings }))
+    Ok(Some(Proven {
+        statement,
+        findings,
+        certified,
+    }))
 }
 
 /// What is wrong with the triangles of a target, with some of the places.
@@ -127,12 +111,13 @@ impl Proven {
         Self {
             statement,
             findings: Vec::new(),
+            certified: None,
         }
     }
 }
 
 /// The least and the largest depth that is allowed somewhere.
-fn limits(job: &Job) -> [f64; 2] {
+pub(super) fn limits(job: &Job) -> [f64; 2] {
     let own = job.limits.as_ref();
     let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
     let regions = own
