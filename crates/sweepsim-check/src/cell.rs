@@ -23,7 +23,10 @@ const MOST_PIECES: usize = 256;
 /// What is near a cell.
 enum Near {
     /// The corners of polygons, and where each polygon ends.
-    Pieces { corners: Vec<V3>, ends: Vec<u32> },
+    Pieces {
+        corners: Vec<V3>,
+        ends: Vec<u32>,
+    },
     Many,
     /// Nothing; and whether all of the surroundings are outside, if that can be told.
     Nothing(Option<bool>),
@@ -246,7 +249,9 @@ impl Cell {
     pub fn place(&self, off: &V3) -> Option<V3> {
         let around = self.around();
         let place: V3 = std::array::from_fn(|k| self.centre[k] + off[k]);
-        let is_near = sub(&place, &self.centre).iter().all(|c| c.abs() < around * (1.0 - 1e-12));
+        let is_near = sub(&place, &self.centre)
+            .iter()
+            .all(|c| c.abs() < around * (1.0 - 1e-12));
         is_near.then_some(place)
     }
 }

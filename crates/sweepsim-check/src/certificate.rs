@@ -1,10 +1,12 @@
-//! The file: JSON, with the trees in base64, and the digest of all that comes before it at its end.
+//! The file: JSON, with the trees deflated and in base64, and the digest of all that comes before it at its end.
 
 use crate::scene::hexadecimal;
 use crate::solid::Solid;
 use crate::walk::{Reader, Tree};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use miniz_oxide::deflate::compress_to_vec;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -16,6 +18,8 @@ const FORMAT: &str = "sweepsim certificate";
 const VERSION: u32 = 1;
 /// The last field of the file.
 const DIGEST: &str = ",\"digest\":\"";
+/// Trees of more bytes are not taken.
+const MOST_BYTES: usize = 1 << 31;
 /// Digits of a digest.
 const DIGITS: usize = 64;
 
@@ -64,7 +68,7 @@ pub struct Claim {
     pub root: ([f64; 3], f64),
     /// Convex solids that cover each tool.
     pub tools: BTreeMap<u32, Vec<Solid>>,
-    /// The [trees](trees), in base64.
+    /// The [trees](trees), deflated, in base64.
     pub trees: String,
 }
 
@@ -148,7 +152,9 @@ impl Certificate {
     /// [`NoCertificate`].
     pub fn read(text: &[u8]) -> Result<Self, NoCertificate> {
         let end = DIGEST.len() + DIGITS + "\"}\n".len();
-        let (content, end) = text.split_at_checked(text.len().saturating_sub(end)).ok_or(NoCertificate::End)?;
+        let (content, end) = text
+            .split_at_checked(text.len().saturating_sub(end))
+            .ok_or(NoCertificate::End)?;
         let digest = end
             .strip_prefix(DIGEST.as_bytes())
             .and_then(|end| end.strip_suffix(b"\"}\n"))
@@ -187,7 +193,7 @@ pub struct TreePart<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Trees in base64, each after five numbers: path, first move, moves, solid, and bytes. Those of a path and a solid are
+/// Trees, deflated and in base64: each after five numbers: path, first move, moves, solid, and bytes. Those of a path and a solid are
 /// in the order of moves.
 #[must_use]
 pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
@@ -206,12 +212,13 @@ pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
         }
         all.extend_from_slice(part.bytes);
     }
-    STANDARD.encode(all)
+    STANDARD.encode(compress_to_vec(&all, 6))
 }
 
 impl Claim {
     pub(crate) fn bytes(&self) -> Option<Vec<u8>> {
-        STANDARD.decode(&self.trees).ok()
+        let packed = STANDARD.decode(&self.trees).ok()?;
+        decompress_to_vec_with_limit(&packed, MOST_BYTES).ok()
     }
 }
 

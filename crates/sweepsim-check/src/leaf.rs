@@ -105,7 +105,10 @@ impl Near<'_> {
 
     /// Lifted above two or three planes.
     pub fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
-        let reach: Vec<f64> = normals.iter().map(|n| self.reach_in_cell_up(&scaled(n, -1.0))).collect();
+        let reach: Vec<f64> = normals
+            .iter()
+            .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
+            .collect();
         // Each piece is below that plane which has to be raised least for it.
         let mut tops = vec![f64::NEG_INFINITY; normals.len()];
         for own in self.cell.tops_up(normals)? {
@@ -120,7 +123,10 @@ impl Near<'_> {
         let more = 64.0 * EPS * size;
         let needs: Vec<f64> = used.iter().map(|i| (tops[*i] + reach[*i]).max(-half) + more).collect();
         let lift = shortest(&normals, &needs)?;
-        let lifts = used.iter().zip(&normals).all(|(i, n)| dot_down(n, &lift) >= tops[*i] + reach[*i] + 4.0 * EPS * size);
+        let lifts = used
+            .iter()
+            .zip(&normals)
+            .all(|(i, n)| dot_down(n, &lift) >= tops[*i] + reach[*i] + 4.0 * EPS * size);
         let value = norm_up(&lift);
         if !lifts || value > self.most() {
             return None;
@@ -137,7 +143,11 @@ impl Near<'_> {
 /// What a height along `n` is divided by: a bound of the length of `n`, so that the quotient is not too small.
 fn length_for(height: f64, n: &V3) -> f64 {
     let length = norm_up(n);
-    if height > 0.0 { length * (2.0 - MORE) * (2.0 - MORE) } else { length }
+    if height > 0.0 {
+        length * (2.0 - MORE) * (2.0 - MORE)
+    } else {
+        length
+    }
 }
 
 /// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet some of them exactly, and for these, all others too.
@@ -145,7 +155,10 @@ fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let mut best: Option<V3> = None;
     let mut take = |w: V3| {
-        let meets = normals.iter().zip(needs).all(|(n, need)| dot_up(n, &w) >= need - 1e-13 * size);
+        let meets = normals
+            .iter()
+            .zip(needs)
+            .all(|(n, need)| dot_up(n, &w) >= need - 1e-13 * size);
         if meets && best.is_none_or(|best| dot(&w, &w) < dot(&best, &best)) {
             best = Some(w);
         }
@@ -157,7 +170,10 @@ fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
             let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
             let scale = aa * bb - ab * ab;
             if scale > 1e-4 {
-                let (alpha, beta) = ((needs[i] * bb - needs[j] * ab) / scale, (needs[j] * aa - needs[i] * ab) / scale);
+                let (alpha, beta) = (
+                    (needs[i] * bb - needs[j] * ab) / scale,
+                    (needs[j] * aa - needs[i] * ab) / scale,
+                );
                 take(add(&scaled(a, alpha), &scaled(b, beta)));
             }
         }
@@ -165,8 +181,14 @@ fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
     if let [a, b, c] = normals {
         // Cramer's rule.
         let volume = dot(a, &cross(b, c));
-        let parts = [(cross(b, c), needs[0]), (cross(c, a), needs[1]), (cross(a, b), needs[2])];
-        let sum = parts.iter().fold([0.0; 3], |sum, (part, need)| add(&sum, &scaled(part, *need)));
+        let parts = [
+            (cross(b, c), needs[0]),
+            (cross(c, a), needs[1]),
+            (cross(a, b), needs[2]),
+        ];
+        let sum = parts
+            .iter()
+            .fold([0.0; 3], |sum, (part, need)| add(&sum, &scaled(part, *need)));
         if volume.abs() > 1e-9 {
             take(scaled(&sum, 1.0 / volume));
         }
@@ -179,5 +201,7 @@ pub(crate) fn lever(run: &Run, cell: &Cell, ends: &[Placement; 2], travel: f64) 
     let middle = scaled(&add(&ends[0].tip, &ends[1].tip), 0.5);
     let far = norm_up(&sub(&middle, &cell.centre)) + 3_f64.sqrt() * cell.half * MORE;
     let far = far + travel + ends[0].tip_error + ends[1].tip_error;
-    run.body.reach.min(far * MORE + 1e-12 * crate::vector::size(&cell.centre))
+    run.body
+        .reach
+        .min(far * MORE + 1e-12 * crate::vector::size(&cell.centre))
 }

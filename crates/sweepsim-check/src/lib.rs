@@ -207,14 +207,20 @@ fn one(
 fn witness(scene: &Scene, claim: &Claim, surface: &Surface) -> Result<(), String> {
     let lo = claim.enclosure[0];
     let Some(witness) = &claim.witness else {
-        return if lo > 0.0 { Err("there is no witness".into()) } else { Ok(()) };
+        return if lo > 0.0 {
+            Err("there is no witness".into())
+        } else {
+            Ok(())
+        };
     };
     let path = scene.paths.get(witness.path).ok_or("the witness has no path")?;
     let outline = scene.tools.iter().find(|(number, _)| *number == path.tool);
     let (_, outline) = outline.ok_or("the witness has no tool")?;
     let [first, count] = witness.moves;
     let is_there = count <= MOST_MOVES && first.checked_add(count).is_some_and(|end| end <= path.moves.len());
-    let all = is_there.then(|| stretches(path, first..first + count, joins(scene, surface))).flatten();
+    let all = is_there
+        .then(|| stretches(path, first..first + count, joins(scene, surface)))
+        .flatten();
     let (piece, t) = witness.piece;
     let stretch: Option<&Stretch> = all.as_ref().and_then(|all| all.get(piece));
     let stretch = stretch.filter(|stretch| (0.0..=1.0).contains(&t) && stretch.number == witness.number);

@@ -52,7 +52,11 @@ impl Curve {
             points: points.to_vec(),
             weights: weights.to_vec(),
             speed: speed + error,
-            bend: if degree == 1 && weights[0] == weights[1] { 0.0 } else { bend + error },
+            bend: if degree == 1 && weights[0] == weights[1] {
+                0.0
+            } else {
+                bend + error
+            },
             error,
         })
     }
@@ -77,7 +81,11 @@ impl Curve {
 fn rates(points: &[V3], weights: &[f64], least: f64) -> (f64, f64) {
     let degree = points.len() - 1;
     let middle = scaled(&points[degree / 2], 1.0 / weights[degree / 2]);
-    let own: Vec<V3> = points.iter().zip(weights).map(|(p, w)| sub(p, &scaled(&middle, *w))).collect();
+    let own: Vec<V3> = points
+        .iter()
+        .zip(weights)
+        .map(|(p, w)| sub(p, &scaled(&middle, *w)))
+        .collect();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max) * MORE;
     let n = degree as f64;
     let radius = largest(&mut own.iter().zip(weights).map(|(p, w)| norm(p) / w));
@@ -148,7 +156,11 @@ impl Stretch {
     }
 
     pub fn at(&self, t: f64) -> Placement {
-        let axis = if self.keeps_axis() { self.axis.points[0] } else { self.axis.at(t) };
+        let axis = if self.keeps_axis() {
+            self.axis.points[0]
+        } else {
+            self.axis.at(t)
+        };
         Placement {
             tip: self.tip.at(t),
             axis,
@@ -247,7 +259,10 @@ pub(crate) fn stretches(path: &Path, moves: Range<usize>, off: f64) -> Option<Ve
         }
     }
     let first = path.others.partition_point(|(number, _)| *number < moves.start);
-    for (number, poses) in path.others[first..].iter().take_while(|(number, _)| *number < moves.end) {
+    for (number, poses) in path.others[first..]
+        .iter()
+        .take_while(|(number, _)| *number < moves.end)
+    {
         for pair in poses.windows(2) {
             all.extend(linear_stretches(&pair[0], &pair[1], *number)?);
         }

@@ -66,7 +66,10 @@ impl Body {
             solid.corners.extend([end(from), end(to)]);
         }
         let corners = solid.corners.iter().map(|p| p[0].hypot(p[1]));
-        let arcs = solid.arcs.iter().map(|arc| arc.centre[0].hypot(arc.centre[1]) + arc.radius);
+        let arcs = solid
+            .arcs
+            .iter()
+            .map(|arc| arc.centre[0].hypot(arc.centre[1]) + arc.radius);
         let reach = corners.chain(arcs).fold(0.0, f64::max) * MORE;
         // What is as near as rounding is one point, within the slack.
         let mut kept: Vec<P2> = Vec::new();
@@ -217,7 +220,10 @@ pub(crate) fn covering(outline: &Outline, solids: &[Solid]) -> Result<Vec<Body>,
         }
         before = to;
         if !cover.holds_curve(curve) {
-            return Err(format!("the outline of a tool is not covered near ({}, {})", from[0], from[1]));
+            return Err(format!(
+                "the outline of a tool is not covered near ({}, {})",
+                from[0], from[1]
+            ));
         }
     }
     if !outline.curves.is_empty() && !(before[0].abs() <= 1e-9 * reach) {
@@ -298,7 +304,8 @@ impl Cover<'_> {
             }
             let next = self.bodies.iter().find_map(|body| {
                 body.solid.arcs.iter().find_map(|arc| {
-                    let off = apart(arc.centre, centre) + (arc.radius - radius).abs() + radius * apart(arc.normals[0], at);
+                    let off =
+                        apart(arc.centre, centre) + (arc.radius - radius).abs() + radius * apart(arc.normals[0], at);
                     let heights = heights(arc);
                     let axis = off_with_axis(body, &heights.map(|height| [0.0, height]));
                     (off.max(axis) <= self.near).then_some((off + axis, arc.normals[1]))
@@ -353,7 +360,9 @@ pub(crate) fn off_tool(outline: &Outline, [rho, zeta]: P2) -> f64 {
             } => {
                 let off = [rho - centre[0], zeta - centre[1]];
                 let turned = |angle: f64| ((angle - start) * sweep.signum()).rem_euclid(std::f64::consts::TAU);
-                nearest = nearest.min(apart([rho, zeta], ends[0])).min(apart([rho, zeta], ends[1]));
+                nearest = nearest
+                    .min(apart([rho, zeta], ends[0]))
+                    .min(apart([rho, zeta], ends[1]));
                 if turned(off[1].atan2(off[0])) <= sweep.abs() {
                     nearest = nearest.min((off[0].hypot(off[1]) - radius).abs());
                 }

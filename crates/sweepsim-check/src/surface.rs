@@ -47,7 +47,9 @@ impl Surface {
         }
         if let Some(edge) = open_edge(triangles) {
             let [x, y, z] = edge;
-            return Err(format!("the target is not closed, or not turned one way, at ({x}, {y}, {z})"));
+            return Err(format!(
+                "the target is not closed, or not turned one way, at ({x}, {y}, {z})"
+            ));
         }
         let mut surface = Self {
             triangles: triangles.to_vec(),
@@ -81,7 +83,12 @@ impl Surface {
             let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b])).unwrap_or(0);
             let middle = usize::midpoint(first, last);
             let triangles = &self.triangles;
-            let key = |number: &u32| triangles[*number as usize].iter().map(|corner| corner[axis]).sum::<f64>();
+            let key = |number: &u32| {
+                triangles[*number as usize]
+                    .iter()
+                    .map(|corner| corner[axis])
+                    .sum::<f64>()
+            };
             self.order[first..last].select_nth_unstable_by(middle - first, |a, b| key(a).total_cmp(&key(b)));
             self.build(first, middle);
             self.nodes[own].second = Some(self.nodes.len() as u32);
@@ -96,7 +103,9 @@ impl Surface {
 
     /// Whether a point is outside of the target. `None` if that cannot be told.
     pub fn is_outside(&self, point: &V3) -> Option<bool> {
-        WAYS.iter().find_map(|way| self.winding(point, way)).map(|winding| winding <= 0)
+        WAYS.iter()
+            .find_map(|way| self.winding(point, way))
+            .map(|winding| winding <= 0)
     }
 
     /// The crossings of a ray; `None` if it comes too near to an edge.

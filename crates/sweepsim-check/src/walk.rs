@@ -221,8 +221,9 @@ impl<'a> Walk<'a> {
 
     /// No point is deeper, as far as the leaf says.
     fn bound(&self, cell: &Cell, when: When, kind: u8, normals: &[V3]) -> Option<f64> {
-        if kind == 3 {
-            return cell.is_clear().then_some(f64::NEG_INFINITY);
+        // Whatever is said of it: nothing of the target is in the cell.
+        if cell.is_clear() {
+            return Some(f64::NEG_INFINITY);
         }
         if kind == 4 {
             let depth = cell.depth_by_middle(self.surface);
@@ -250,6 +251,8 @@ impl<'a> Walk<'a> {
         let nothing = |is_empty: bool| is_empty.then_some(f64::NEG_INFINITY);
         match (kind, normals) {
             (2, _) => nothing(near.missed()),
+            // Said to be clear, and not.
+            (3, _) => None,
             (5, [n]) => nothing(near.separated(n)),
             (6, [n]) => near.lifted(n, true),
             (7, [n]) => near.lifted(n, false),

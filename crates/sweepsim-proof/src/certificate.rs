@@ -21,8 +21,14 @@ pub fn scene<'a>(
 ) -> Scene {
     let mut scene = Scene::default();
     scene.triangles.clone_from(&target.triangles);
-    scene.tools = tools.into_iter().map(|(number, tool)| (number, outline(tool))).collect();
-    scene.paths = cutters.iter().map(|(tool, cutter)| path(*tool, cutter, limits)).collect();
+    scene.tools = tools
+        .into_iter()
+        .map(|(number, tool)| (number, outline(tool)))
+        .collect();
+    scene.paths = cutters
+        .iter()
+        .map(|(tool, cutter)| path(*tool, cutter, limits))
+        .collect();
     scene.deviation = limits.deviation();
     scene
 }
@@ -40,7 +46,10 @@ pub fn claim(target: &Target, cutters: &[(u32, Cutter)], limits: &Limits, found:
         .map(|(tool, cutter)| (*tool, cutter.solids.iter().map(solid).collect()))
         .collect();
     let part = |(path, number): (usize, usize)| {
-        let tree = found.trees.iter().find(|tree| tree.path == path && tree.moves.contains(&number));
+        let tree = found
+            .trees
+            .iter()
+            .find(|tree| tree.path == path && tree.moves.contains(&number));
         tree.map(|tree| [tree.moves.start, tree.moves.len()])
     };
     let witness = match &found.deepest {
@@ -186,7 +195,11 @@ fn plain(segment: &Segment) -> PlainPiece {
     PlainPiece {
         tips: points.into_iter().map(Into::into).collect(),
         tip_weights,
-        axes: segment.turns().iter().map(|turn| turn.column(2).into_owned().into()).collect(),
+        axes: segment
+            .turns()
+            .iter()
+            .map(|turn| turn.column(2).into_owned().into())
+            .collect(),
         axis_weights: segment.weights().to_vec(),
     }
 }

@@ -34,7 +34,10 @@ fn summary(found: &CheckedCertificate, seconds: f64) -> Lines {
         lines.line("stated", &format!("largest depth between {least} and {most} mm"));
         let nodes = words::counted(checked.nodes as u64, "node");
         let bound = words::measure(checked.bound);
-        lines.line("recomputed", &format!("at most {bound} mm, {nodes} of the proof, in {seconds:.2} s"));
+        lines.line(
+            "recomputed",
+            &format!("at most {bound} mm, {nodes} of the proof, in {seconds:.2} s"),
+        );
         for wrong in &checked.wrong {
             lines.line("wrong", wrong);
         }

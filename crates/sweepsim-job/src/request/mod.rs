@@ -271,7 +271,12 @@ impl Request {
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut request = self.clone();
         let machine = self.program.dialect.machine.as_ref().map(PathBuf::from);
-        request.files_mut().into_iter().map(|file| file.clone()).chain(machine).collect()
+        request
+            .files_mut()
+            .into_iter()
+            .map(|file| file.clone())
+            .chain(machine)
+            .collect()
     }
 
     fn files_mut(&mut self) -> Vec<&mut PathBuf> {
@@ -293,7 +298,10 @@ impl Request {
         }
         // A machine is a file, or the name of a ready one.
         let machine = &mut self.program.dialect.machine;
-        let file = machine.as_ref().map(|name| folder.join(name)).filter(|file| file.is_file());
+        let file = machine
+            .as_ref()
+            .map(|name| folder.join(name))
+            .filter(|file| file.is_file());
         if let Some(file) = file {
             *machine = Some(file.display().to_string());
         }

@@ -64,13 +64,7 @@ pub enum Output {
 
 impl Output {
     /// What is written if nothing else is asked for.
-    pub const DEFAULT: [Self; 5] = [
-        Self::Dexels,
-        Self::Mesh,
-        Self::Picture,
-        Self::Report,
-        Self::Certificate,
-    ];
+    pub const DEFAULT: [Self; 5] = [Self::Dexels, Self::Mesh, Self::Picture, Self::Report, Self::Certificate];
 }
 
 /// The directions of the dexels that meshes and pictures are made of.

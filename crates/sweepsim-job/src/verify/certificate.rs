@@ -29,7 +29,10 @@ pub(super) struct Asked {
 impl Asked {
     pub fn new(job: &Job) -> Self {
         let [least, _] = proof::limits(job);
-        let solids = job.tools.iter().map(|(number, tool)| (*number, cover(tool, CHORDS * least)));
+        let solids = job
+            .tools
+            .iter()
+            .map(|(number, tool)| (*number, cover(tool, CHORDS * least)));
         Self {
             solids: solids.collect(),
             limits: Limits {
@@ -209,7 +212,9 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
         return Err(other(format!("{} has changed, or is not there", changed.file)));
     }
     let asked = Asked::new(&plan.job);
-    let own = asked.scene(&plan.job).ok_or_else(|| other("there is no target".into()))?;
+    let own = asked
+        .scene(&plan.job)
+        .ok_or_else(|| other("there is no target".into()))?;
     if own.digest() != scene {
         return Err(other("target, tools or paths are others".into()));
     }

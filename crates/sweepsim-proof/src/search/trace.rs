@@ -137,7 +137,9 @@ impl Trace {
             if let Some(reason) = node.reason.filter(|_| node.value + allowance <= bound) {
                 written.bytes.push(reason as u8);
                 let normals = &self.normals[node.normals as usize..];
-                normals[..reason.normals()].iter().for_each(|normal| written.normal(*normal));
+                normals[..reason.normals()]
+                    .iter()
+                    .for_each(|normal| written.normal(*normal));
                 continue;
             }
             match node.divided {

@@ -283,7 +283,10 @@ impl Cell {
     }
 
     fn way_above(&self, normal: Normal, triangles: &[Triangle], corners: &[Vector3<f64>]) -> Way {
-        let Normal { vector: normal, written } = normal;
+        let Normal {
+            vector: normal,
+            written,
+        } = normal;
         let top = highest(corners, &normal).0;
         let is_out = || {
             let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
