@@ -2,7 +2,6 @@
 
 use crate::scene::hexadecimal;
 use crate::solid::Solid;
-use crate::walk::{Reader, Tree};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec;
@@ -220,21 +219,4 @@ impl Claim {
         let packed = STANDARD.decode(&self.trees).ok()?;
         decompress_to_vec_with_limit(&packed, MOST_BYTES).ok()
     }
-}
-
-pub(crate) fn parts(bytes: &[u8]) -> Option<Vec<Tree<'_>>> {
-    let (mut reader, mut all) = (Reader(bytes), Vec::new());
-    while !reader.0.is_empty() {
-        let mut number = || reader.number();
-        let [path, first, count, solid, length] = [number()?, number()?, number()?, number()?, number()?];
-        let bytes = reader.bytes(length)?;
-        all.push(Tree {
-            path,
-            first,
-            count,
-            solid,
-            bytes,
-        });
-    }
-    Some(all)
 }
