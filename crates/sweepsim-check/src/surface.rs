@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(surface.is_outside(&[0.5, 0.5, 0.5]), Some(true));
         assert_eq!(surface.is_outside(&[-0.1, 0.1, 0.1]), Some(true));
         let (distance, near) = surface.nearest(&[0.1, 0.2, 0.3]);
-        assert!(distance <= 0.1 && distance > 0.1 - 1e-15 && near == [0.0, 0.2, 0.3]);
+        assert!(distance <= 0.1 && distance > 0.1 - 1e-14 && near == [0.0, 0.2, 0.3]);
         assert!(Surface::new(&triangles[1..]).is_err());
         // Inside out: nothing is inside.
         let surface = Surface::new(&triangles.map(|[a, b, c]| [a, c, b])).expect("closed");
