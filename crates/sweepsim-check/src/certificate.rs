@@ -192,8 +192,8 @@ pub struct TreePart<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Trees, deflated and in base64: each after five numbers: path, first move, moves, solid, and bytes. Those of a path and a solid are
-/// in the order of moves.
+/// Trees, deflated and in base64: each after five numbers: path, first move, moves, solid, and bytes. Those of
+/// a path and a solid are in the order of moves.
 #[must_use]
 pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
     let mut all = Vec::new();

@@ -1,8 +1,8 @@
 //! Checks certificates that no cutter of a program goes too deep into a target.
 //!
-//! [`Certificate::read`] takes the text of a certificate, and [`check`] compares it with a [`Scene`]: target, tools and
-//! paths as plain numbers. It shares no code with the prover, and rounds all bounds outwards. The crate's README has the
-//! statement, the format, and where each step is proven.
+//! [`Certificate::read`] takes the text of a certificate, and [`check`] compares it with a [`Scene`]: target,
+//! tools and paths as plain numbers. It shares no code with the prover, and rounds all bounds outwards. The
+//! crate's README has the statement, the format, and where each step is proven.
 
 mod cell;
 mod certificate;

@@ -1,9 +1,9 @@
 //! Follows the trees of a certificate, and looks at each leaf.
 //!
-//! A tree is about some moves of a path and one of the convex solids that cover its tool. Its root is all of these moves
-//! and the cube around the target. A division of time is into both halves, of the list of pieces or of one; one of the
-//! cell is into its eight parts, without those that the box of what is swept misses. So the leaves cover all times, and
-//! all of the cube, and nothing of the target is outside of it.
+//! A tree is about some moves of a path and one of the convex solids that cover its tool. Its root is all of
+//! these moves and the cube around the target. A division of time is into both halves, of the list of pieces or
+//! of one; one of the cell is into its eight parts, without those that the box of what is swept misses. So the
+//! leaves cover all times, and all of the cube, and nothing of the target is outside of it.
 
 use crate::cell::{Budget, Cell, NoCell};
 use crate::leaf::{During, Near, lever};

@@ -1,6 +1,6 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
-use super::proof;
+use super::targets;
 use crate::base::JobError;
 use crate::request::{Input, Request};
 use crate::session::Plan;
@@ -20,6 +20,20 @@ const PAIRS_OF_MOVE: usize = 400;
 /// Larger files are no certificates.
 const MOST_BYTES: u64 = 1 << 31;
 
+/// The least and the largest depth that is allowed somewhere.
+pub(super) fn limits(job: &Job) -> [f64; 2] {
+    let own = job.limits.as_ref();
+    let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
+    let regions = own
+        .into_iter()
+        .flat_map(|limits| &limits.regions)
+        .map(|region| region.gouge);
+    let floor = 2.0 * job.tolerance;
+    regions.fold([general.max(floor); 2], |[least, most], limit| {
+        [least.min(limit.max(floor)), most.max(limit.max(floor))]
+    })
+}
+
 /// What is asked of gouges in a job.
 pub(super) struct Asked {
     solids: BTreeMap<u32, Vec<Convex>>,
@@ -28,7 +42,7 @@ pub(super) struct Asked {
 
 impl Asked {
     pub fn new(job: &Job) -> Self {
-        let [least, _] = proof::limits(job);
+        let [least, _] = limits(job);
         let solids = job
             .tools
             .iter()

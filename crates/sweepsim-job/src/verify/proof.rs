@@ -1,7 +1,6 @@
 //! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
 
-use super::certificate::{Asked, Certified};
-use super::targets;
+use super::certificate::{Asked, Certified, limits};
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
@@ -114,20 +113,6 @@ impl Proven {
             certified: None,
         }
     }
-}
-
-/// The least and the largest depth that is allowed somewhere.
-pub(super) fn limits(job: &Job) -> [f64; 2] {
-    let own = job.limits.as_ref();
-    let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
-    let regions = own
-        .into_iter()
-        .flat_map(|limits| &limits.regions)
-        .map(|region| region.gouge);
-    let floor = 2.0 * job.tolerance;
-    regions.fold([general.max(floor); 2], |[least, most], limit| {
-        [least.min(limit.max(floor)), most.max(limit.max(floor))]
-    })
 }
 
 fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness) -> StatementWitness {

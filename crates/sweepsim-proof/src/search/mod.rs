@@ -4,6 +4,7 @@ mod bound;
 mod deepest;
 mod found;
 mod gouge;
+mod pair;
 mod reach;
 mod trace;
 
