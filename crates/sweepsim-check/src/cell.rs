@@ -58,9 +58,9 @@ pub(crate) enum NoCell {
 pub(crate) struct Budget(AtomicUsize);
 
 impl Budget {
-    /// Of some hundred bytes each; every eight corners count as another.
+    /// Of some hundred bytes each; every sixteen corners count as another.
     pub fn new() -> Self {
-        Self(AtomicUsize::new(6_000_000))
+        Self(AtomicUsize::new(4_000_000))
     }
 
     fn take(&self, count: usize) -> bool {
@@ -151,7 +151,7 @@ impl Cell {
         if self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
             return Err(NoCell::TooSmall);
         }
-        if child.get().is_none() && !budget.take(1 + corners / 32) {
+        if child.get().is_none() && !budget.take(1 + corners / 16) {
             return Err(NoCell::TooMany);
         }
         Ok(child.get_or_init(|| {

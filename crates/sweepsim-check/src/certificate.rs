@@ -220,3 +220,31 @@ impl Claim {
         decompress_to_vec_with_limit(&packed, MOST_BYTES).ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_versions_and_other_files_are_refused() {
+        let empty = || serde_json::Value::Null;
+        let certificate = Certificate::new("a test".into(), empty(), Vec::new(), String::new(), Vec::new());
+        let text = certificate.written().expect("a notation");
+        assert_eq!(Certificate::read(text.as_bytes()).expect("a certificate"), certificate);
+        let later = Certificate {
+            version: 2,
+            ..certificate.clone()
+        };
+        let text = later.written().expect("a notation");
+        assert!(matches!(
+            Certificate::read(text.as_bytes()),
+            Err(NoCertificate::Version(2))
+        ));
+        let other = Certificate {
+            format: "a shopping list".into(),
+            ..certificate
+        };
+        let text = other.written().expect("a notation");
+        assert!(matches!(Certificate::read(text.as_bytes()), Err(NoCertificate::End)));
+    }
+}

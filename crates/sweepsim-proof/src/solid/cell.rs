@@ -362,3 +362,31 @@ pub(crate) fn is_outside(point: &Vector3<f64>, pieces: &[Piece], triangles: &[Tr
         first.map(|(_, slope)| slope < 0.0)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::Target;
+    use sweepsim_dexel::TriangleSoup;
+
+    /// A face passes below the cell and hardly looks up: what is above it, within the surroundings, is inside.
+    #[test]
+    fn above_a_face_is_not_outside_if_no_line_leads_there() {
+        let face = Vector3::new(0.72, 0.0, -0.694).normalize();
+        let turned = |[x, y, z]: [f64; 3]| [x * face.x - z * face.z, y, x * face.z + z * face.x];
+        let mut soup = TriangleSoup::block([-20.0; 3], [1.2, 20.0, 20.0]);
+        soup.triangles
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|corner| *corner = turned(*corner));
+        let target = Target::new(&soup).expect("closed");
+        let all = Near::Many((0..12).collect());
+        let cell = Cell::new(Vector3::zeros(), 0.5, &all, &target.triangles, &target.distance);
+        let out = |direction: Vector3<f64>| {
+            let normal = Normal::near(&direction).expect("a direction");
+            cell.way(normal, &target.triangles).out
+        };
+        assert!(face.dot(&Vector3::new(1.0, 0.0, 1.0)) > 0.02 && out(face));
+        assert!(!out(Vector3::new(1.0, 0.0, 1.0)));
+    }
+}
