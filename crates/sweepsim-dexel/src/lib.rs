@@ -37,7 +37,7 @@ pub use dexels::{
 };
 pub use grid::{Frame, FrameError, Grid, GridError};
 pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};
-pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, TriangleSoup};
+pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, NearestTriangle, TriangleSoup};
 pub use stock::{Stock, StockError};
 pub use tri::{TriDexels, TriDexelsError};
 

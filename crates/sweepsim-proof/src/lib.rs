@@ -7,6 +7,7 @@
 //! The crate's README has an example, and its page *Proofs between the lines* the mathematics.
 
 mod certificate;
+mod excess;
 mod motion;
 mod search;
 mod solid;
@@ -14,7 +15,8 @@ mod statement;
 mod tool;
 
 pub use certificate::{claim, scene};
-pub use search::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};
+pub use excess::{Left, highest};
+pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest, deepest_recorded};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

@@ -136,10 +136,9 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         );
         line("verdict", &text);
     } else if verdict == Verdict::Pass {
-        let proven = if statements.is_empty() {
-            ""
-        } else {
-            " (gouges: proven everywhere)"
+        let proven = match statements {
+            [] => String::new(),
+            all => format!(" ({}: proven everywhere)", words::abouts(all)),
         };
         let text = format!("PASS on the dexels' lines only{proven}: nothing was found on them that does harm");
         line("verdict", &text);

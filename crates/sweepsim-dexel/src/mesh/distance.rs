@@ -48,8 +48,11 @@ pub struct Nearest {
 }
 
 /// A triangle near a point.
-pub(super) struct NearestTriangle {
+#[derive(Clone, Copy, Debug)]
+pub struct NearestTriangle {
+    /// How far the point is from it.
     pub distance: f64,
+    /// Its corners.
     pub corners: [[f64; 3]; 3],
     /// Normals of planes through its edges.
     pub inwards: [[f64; 3]; 3],
@@ -57,6 +60,7 @@ pub(super) struct NearestTriangle {
 
 impl NearestTriangle {
     /// The distance of a point.
+    #[must_use]
     pub fn distance_of(&self, p: [f64; 3]) -> f64 {
         let off = sub(p, nearest_on(p, self.corners).0);
         dot(off, off).sqrt()
@@ -338,7 +342,7 @@ impl DistanceTo {
     /// The triangle nearest to `p`: its distance, its corners, and for each edge from a corner to the next the normal
     /// of a plane through it that the triangle beyond shares, pointing inwards.
     #[must_use]
-    pub(super) fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
+    pub fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
         let (number, place, _) = self.closest(p, f64::INFINITY, |_| true)?;
         let face = &self.faces[number];
         let corners = face.corners.map(|v| self.vertices[v as usize]);

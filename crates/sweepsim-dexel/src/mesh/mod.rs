@@ -9,7 +9,7 @@ mod parts;
 mod thicken;
 
 use crate::grid::Frame;
-pub use distance::{DistanceTo, Nearest};
+pub use distance::{DistanceTo, Nearest, NearestTriangle};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;

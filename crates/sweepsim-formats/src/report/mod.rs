@@ -3,7 +3,7 @@
 mod statement;
 mod work;
 
-pub use statement::{OpenPlace, Statement, StatementState, StatementWitness};
+pub use statement::{Measure, OpenPlace, Statement, StatementState, StatementWitness};
 pub use work::{MoveSummary, SetupSummary, ToolSummary, WorkSummary, write_moves_csv};
 
 use indexmap::IndexMap;

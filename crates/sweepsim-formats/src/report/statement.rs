@@ -6,12 +6,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Statement {
-    /// `gouge`: no cutter goes deeper below the target than the limit.
+    /// `gouge`: no cutter goes deeper below the target than the limit; `excess`: nothing that hangs together with the
+    /// target stands higher above it; `fixture`: no cutter or body goes deeper into a fixture; `holder`: nor a body into
+    /// the target. The last two with [`Measure::Distance`]: no body comes nearer than the limit.
     pub about: String,
+    /// What is measured.
+    #[serde(default, skip_serializing_if = "Measure::is_depth")]
+    pub measure: Measure,
     /// The limit.
     pub limit: f64,
-    /// The largest depth lies between these: the first is attained at the witness, the second is proven: the
-    /// largest number there is if nothing is known.
+    /// The largest depth or height, or the smallest distance, lies between these. One is attained at the witness: the
+    /// first, or the second of a distance. The other is proven: if nothing is known, it is the largest number there is,
+    /// or 0 of a distance.
     pub enclosure: [f64; 2],
     /// Whether the statement holds.
     pub state: StatementState,
@@ -32,6 +38,7 @@ impl Statement {
     pub fn new(about: impl Into<String>, limit: f64) -> Self {
         Self {
             about: about.into(),
+            measure: Measure::Depth,
             limit,
             enclosure: [0.0, f64::MAX],
             state: StatementState::Open,
@@ -40,6 +47,26 @@ impl Statement {
             open_count: 0,
             reason: None,
         }
+    }
+}
+
+/// What a statement bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Measure {
+    /// How deep something goes, from above.
+    #[default]
+    Depth,
+    /// How high something stands, from above.
+    Height,
+    /// How far something keeps away, from below.
+    Distance,
+}
+
+impl Measure {
+    fn is_depth(&self) -> bool {
+        *self == Self::Depth
     }
 }
 
@@ -59,10 +86,10 @@ pub enum StatementState {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct StatementWitness {
-    /// The path of the job, from 0.
-    pub path: usize,
+    /// The path of the job, from 0; none for what is left standing.
+    pub path: Option<usize>,
     /// The move of the path, from 0.
-    pub r#move: usize,
+    pub r#move: Option<usize>,
     /// The program's file.
     pub file: Option<String>,
     /// The line of the file, from 1.
@@ -81,10 +108,10 @@ pub struct StatementWitness {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct OpenPlace {
-    /// The path of the job, from 0.
-    pub path: usize,
+    /// The path of the job, from 0; none for what is left standing.
+    pub path: Option<usize>,
     /// The first of the moves, from 0.
-    pub r#move: usize,
+    pub r#move: Option<usize>,
     /// The program's file.
     pub file: Option<String>,
     /// The line of the file, from 1.

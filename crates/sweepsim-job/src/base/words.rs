@@ -1,6 +1,6 @@
 //! Numbers and findings for people.
 
-use sweepsim_formats::{Report, ReportedFinding, Scope, Statement, StatementState};
+use sweepsim_formats::{Measure, Report, ReportedFinding, Scope, Statement, StatementState};
 
 /// `1234567` as `1,234,567`.
 #[must_use]
@@ -147,10 +147,32 @@ pub fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
 
 /// What was looked at between the lines.
 #[must_use]
-pub fn between(report: &Report) -> &'static str {
+pub fn between(report: &Report) -> String {
     match report.statements.as_deref() {
-        None | Some([]) => "nothing between them",
-        Some(_) => "between them, only gouges",
+        None | Some([]) => "nothing between them".to_owned(),
+        Some(statements) => format!("between them, only {}", abouts(statements)),
+    }
+}
+
+/// What statements are about: `gouges, excess and fixtures`.
+#[must_use]
+pub fn abouts(statements: &[Statement]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for statement in statements {
+        let name = match statement.about.as_str() {
+            "gouge" => "gouges",
+            "fixture" => "fixtures",
+            "holder" => "shanks and holders beside the target",
+            about => about,
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    match names.split_last() {
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, first)) => format!("{} and {last}", first.join(", ")),
+        None => String::new(),
     }
 }
 
@@ -158,23 +180,67 @@ pub fn between(report: &Report) -> &'static str {
 #[must_use]
 pub fn proven(statement: &Statement) -> String {
     let [least, most] = statement.enclosure;
-    let deeper = format!("deeper into the target than {} mm", measure(statement.limit));
-    let most = format!("at most {} mm", measure(most));
+    let limit = format!("{} mm", measure(statement.limit));
+    // What is claimed, and what is the case if it does not hold.
+    let (claim, broken) = match (statement.about.as_str(), statement.measure) {
+        ("excess", _) => (
+            format!("nothing that hangs together with the target stands higher above it than {limit}"),
+            format!("material stands higher above the target than {limit}"),
+        ),
+        ("fixture", Measure::Distance) => (
+            format!("no shank or holder comes nearer to a fixture than {limit}"),
+            format!("a shank or holder comes nearer to a fixture than {limit}"),
+        ),
+        ("fixture", _) => (
+            format!("nothing goes deeper into a fixture than {limit}"),
+            format!("a tool goes deeper into a fixture than {limit}"),
+        ),
+        ("holder", Measure::Distance) => (
+            format!("no shank or holder comes nearer to the target than {limit}"),
+            format!("a shank or holder comes nearer to the target than {limit}"),
+        ),
+        ("holder", _) => (
+            format!("no shank or holder goes deeper into the target than {limit}"),
+            format!("a shank or holder goes deeper into the target than {limit}"),
+        ),
+        _ => (
+            format!("no cutter goes deeper into the target than {limit}"),
+            format!("a cutter goes deeper into the target than {limit}"),
+        ),
+    };
+    let bounds = [
+        (least > 0.0).then(|| format!("at least {} mm", measure(least))),
+        (most < f64::MAX).then(|| format!("at most {} mm", measure(most))),
+    ];
+    let [lower, upper] = bounds;
+    let known = match statement.measure {
+        Measure::Distance => lower.clone(),
+        _ => upper.clone(),
+    };
+    let both = [lower, upper].into_iter().flatten().collect::<Vec<_>>().join(", ");
     let mut text = match (statement.state, &statement.reason) {
-        (StatementState::Proven, _) => format!("everywhere and at all times, no cutter goes {deeper}: {most}"),
-        (StatementState::Refuted, _) => format!("a cutter goes {deeper}: at least {} mm, {most}", measure(least)),
-        (StatementState::Open, Some(reason)) => format!("OPEN whether a cutter goes {deeper}: {reason}"),
+        (StatementState::Proven, _) => format!("everywhere and at all times, {claim}: {}", known.unwrap_or(both)),
+        (StatementState::Refuted, _) if both.is_empty() => broken,
+        (StatementState::Refuted, _) => format!("{broken}: {both}"),
+        (StatementState::Open, Some(reason)) => format!("OPEN whether {broken}: {reason}"),
         (StatementState::Open, None) => {
             let places = counted(statement.open_count as u64, "place");
-            format!("OPEN whether a cutter goes {deeper}: {most}, not known in {places}")
+            let known = known.map_or_else(String::new, |known| format!("{known}, "));
+            format!("OPEN whether {broken}: {known}not known in {places}")
         }
     };
     if let Some(witness) = &statement.witness {
         let [x, y, z] = witness.place.map(|c| format!("{c:.3}"));
-        text += &format!("; deepest known at ({x}, {y}, {z})");
-        text += &match (&witness.file, witness.line) {
-            (Some(file), Some(line)) => format!(" by {file}:{line}"),
-            _ => format!(" by path {}, move {}", witness.path, witness.r#move),
+        let extreme = match statement.measure {
+            Measure::Distance => "nearest",
+            Measure::Height => "highest",
+            _ => "deepest",
+        };
+        text += &format!("; {extreme} known at ({x}, {y}, {z})");
+        text += &match (&witness.file, witness.line, witness.path, witness.r#move) {
+            (Some(file), Some(line), ..) => format!(" by {file}:{line}"),
+            (.., Some(path), Some(number)) => format!(" by path {path}, move {number}"),
+            _ => String::new(),
         };
     }
     text

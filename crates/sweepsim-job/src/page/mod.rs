@@ -16,7 +16,7 @@ use deviation::Deviated;
 use program::Programs;
 use sweepsim::verify::Target;
 use sweepsim_dexel::{Dexels, Source};
-use sweepsim_formats::{Job, MoveSummary, Report, StatementState};
+use sweepsim_formats::{Job, Measure, MoveSummary, Report, StatementState};
 use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
 
 /// What the page is made of.
@@ -178,18 +178,24 @@ fn facts(source: &PageSource) -> Vec<Fact> {
     }
     for statement in report.statements.iter().flatten() {
         let (state, [least, most]) = (statement.state, statement.enclosure);
-        let value = match state {
-            StatementState::Proven => format!("at most {} mm", measure(most)),
-            StatementState::Refuted => format!("at least {} mm", measure(least)),
-            _ => "open".to_owned(),
-        };
-        let words = match state {
-            StatementState::Proven => "proven everywhere",
-            StatementState::Refuted => "refuted",
-            _ => "not proven",
+        let least = || format!("at least {} mm", measure(least));
+        let most = || format!("at most {} mm", measure(most));
+        let (title, [proven, refuted]): (_, [&dyn Fn() -> String; 2]) =
+            match (statement.about.as_str(), statement.measure) {
+                ("excess", _) => ("Height of excess", [&most, &least]),
+                ("fixture", Measure::Distance) => ("Distance from fixtures", [&least, &most]),
+                ("fixture", _) => ("Depth in fixtures", [&most, &least]),
+                ("holder", Measure::Distance) => ("Holder from target", [&least, &most]),
+                ("holder", _) => ("Holder in target", [&most, &least]),
+                _ => ("Depth of gouges", [&most, &least]),
+            };
+        let (value, words) = match state {
+            StatementState::Proven => (proven(), "proven everywhere"),
+            StatementState::Refuted => (refuted(), "refuted"),
+            _ => ("open".to_owned(), "not proven"),
         };
         let limit = format!("{words}; the limit is {} mm", measure(statement.limit));
-        facts.push(Fact::new("Depth of gouges", value, limit));
+        facts.push(Fact::new(title, value, limit));
     }
     if let Some(work) = report
         .work

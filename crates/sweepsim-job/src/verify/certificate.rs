@@ -1,80 +1,17 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
-use super::targets;
+use super::asked::Asked;
 use crate::base::JobError;
 use crate::request::{Input, Request};
 use crate::session::Plan;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use sweepsim_check::{Certificate, Checked, Claim, FileDigest, digest_of};
 use sweepsim_formats::{Job, io_reason};
-use sweepsim_proof::{Convex, Cutter, Enclosed, Limits, Target, claim, cover, scene};
+use sweepsim_proof::{Enclosed, Target, claim};
 
-/// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
-const WIDTH: f64 = 0.1;
-/// Concave outlines are replaced by chords within this part of the limit.
-const CHORDS: f64 = 0.01;
-/// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
-const PAIRS: usize = 500_000;
-const PAIRS_OF_MOVE: usize = 400;
 /// Larger files are no certificates.
 const MOST_BYTES: u64 = 1 << 31;
-
-/// The least and the largest depth that is allowed somewhere.
-pub(super) fn limits(job: &Job) -> [f64; 2] {
-    let own = job.limits.as_ref();
-    let general = own.map_or(targets::LIMIT, |limits| limits.gouge);
-    let regions = own
-        .into_iter()
-        .flat_map(|limits| &limits.regions)
-        .map(|region| region.gouge);
-    let floor = 2.0 * job.tolerance;
-    regions.fold([general.max(floor); 2], |[least, most], limit| {
-        [least.min(limit.max(floor)), most.max(limit.max(floor))]
-    })
-}
-
-/// What is asked of gouges in a job.
-pub(super) struct Asked {
-    solids: BTreeMap<u32, Vec<Convex>>,
-    pub limits: Limits,
-}
-
-impl Asked {
-    pub fn new(job: &Job) -> Self {
-        let [least, _] = limits(job);
-        let solids = job
-            .tools
-            .iter()
-            .map(|(number, tool)| (*number, cover(tool, CHORDS * least)));
-        Self {
-            solids: solids.collect(),
-            limits: Limits {
-                depth: least,
-                width: WIDTH * least,
-                pairs: PAIRS + PAIRS_OF_MOVE * job.moves(),
-            },
-        }
-    }
-
-    /// The cutters of all paths, each with the number of its tool.
-    pub fn cutters<'a>(&'a self, job: &'a Job) -> Vec<(u32, Cutter<'a>)> {
-        let cutter = |path: &'a sweepsim_formats::JobPath| Cutter {
-            solids: &self.solids[&path.tool],
-            path: &path.path,
-            others: Some(&path.other_courses),
-        };
-        job.paths.iter().map(|path| (path.tool, cutter(path))).collect()
-    }
-
-    /// Target, tools and paths in plain numbers: of the tools, those that are used.
-    fn scene(&self, job: &Job) -> Option<sweepsim_check::Scene> {
-        let target = job.target.as_ref()?;
-        let used: BTreeSet<u32> = job.paths.iter().map(|path| path.tool).collect();
-        let tools = used.iter().map(|number| (*number, &job.tools[number]));
-        Some(scene(&target.mesh, tools, &self.cutters(job), &self.limits))
-    }
-}
 
 /// A statement that was proven, and the digest of what it is about.
 #[derive(Clone, Debug)]

@@ -25,19 +25,12 @@ pub(super) fn describe(
     findings.extend(axes::findings(job, report, &mut texts));
     let (mut statements, mut certified) = (Vec::new(), Vec::new());
     if session.request.judging.proof && !done.stopped {
-        let gouges = phase(report, "proof", || proof::gouges(session, &mut texts))?;
-        if let Some(proven) = gouges {
-            // What the lines have seen is known better from them.
-            let seen = |own: &ReportedFinding| {
-                let same = |other: &ReportedFinding| (other.path, other.r#move) == (own.path, own.r#move);
-                findings.iter().any(|other| other.kind == "gouge" && same(other))
-            };
-            let new: Vec<_> = proven.findings.into_iter().filter(|own| !seen(own)).collect();
-            let statement = proof::with_lines(proven.statement, &findings);
-            findings.extend(new);
-            certified.extend(proven.certified);
-            statements.push(statement);
-        }
+        let regions = found.iter().flat_map(|found| &found.regions);
+        let is_left = { regions }.any(|region| region.kind == DeviationKind::Excess);
+        let seen = (&findings[..], is_left);
+        let new;
+        (statements, new, certified) = phase(report, "proof", || proof::statements(session, &mut texts, seen))?;
+        findings.extend(new);
         report.statements = Some(statements.clone());
     }
     // A stable sort: of one move, what happens first comes first.
@@ -65,11 +58,14 @@ pub(super) fn describe(
         report.gouge = Some(gouge);
         report.excess = Some(targets::summed(&found.excess));
         report.regions = Some(targets::regions(found, job.limits.as_ref()));
-        let excess = found
+        let excess: Vec<_> = found
             .regions
             .iter()
-            .filter(|region| region.kind == DeviationKind::Excess);
-        findings.extend(excess.map(|region| {
+            .filter(|region| region.kind == DeviationKind::Excess)
+            .collect();
+        // What the lines have seen is known better from them.
+        findings.retain(|finding| finding.kind != "excess" || excess.is_empty());
+        findings.extend(excess.into_iter().map(|region| {
             let mut finding = ReportedFinding::default();
             finding.kind = "excess".to_owned();
             (finding.place, finding.depth, finding.volume) = (region.place, region.depth, region.volume);

@@ -1,5 +1,6 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
+mod asked;
 mod axes;
 mod certificate;
 mod directions;

@@ -3,6 +3,7 @@
 use super::{Placement, Stretch};
 use crate::tool::Convex;
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 
 /// A box along the axes.
 #[derive(Clone, Copy, Debug)]
@@ -124,6 +125,27 @@ impl<'a> Run<'a> {
             bounds.low[k] = -self.reaches(ends, axis, &-direction).0 - bend;
         }
         bounds
+    }
+
+    /// Visits the stretches whose swept boxes meet a box, until one of the visits says no; whether none did.
+    pub fn around(&self, low: &Vector3<f64>, high: &Vector3<f64>, visit: &mut dyn FnMut(&'a Stretch) -> bool) -> bool {
+        let mut open: SmallVec<[usize; 64]> = self.nodes.len().checked_sub(1).into_iter().collect();
+        while let Some(number) = open.pop() {
+            let node = &self.nodes[number];
+            let Bounds { low: from, high: to } = &node.swept;
+            if (0..3).any(|k| high[k] < from[k] || low[k] > to[k]) {
+                continue;
+            }
+            match node.halves {
+                Some([first, second]) => open.extend([second, first]),
+                None => {
+                    if !visit(&self.stretches[node.first]) {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
     }
 
     /// How far the solid reaches in a direction at some placements, and at which of them. `axis`: of all of them.

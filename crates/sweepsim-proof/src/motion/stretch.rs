@@ -64,9 +64,14 @@ impl Stretch {
         self.axis.speed <= STILL
     }
 
+    /// Whether the axis stays the same and the tip moves along a line.
+    pub fn is_straight(&self) -> bool {
+        self.keeps_axis() && self.tip.bend == 0.0
+    }
+
     pub fn at(&self, t: f64) -> Placement {
         let [from, to] = &self.ends;
-        if self.keeps_axis() && self.tip.bend == 0.0 {
+        if self.is_straight() {
             let (tip, axis) = (from.tip + (to.tip - from.tip) * t, from.axis);
             return Placement { tip, axis };
         }

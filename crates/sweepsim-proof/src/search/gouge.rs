@@ -57,6 +57,12 @@ impl Cutter<'_> {
         }
         pieces
     }
+
+    /// The same as stretches.
+    pub(crate) fn stretches(&self, moves: Range<usize>, deviation: f64) -> Vec<Stretch> {
+        let stretch = |piece: Piece| Stretch::new(piece.segment, piece.number, piece.times);
+        self.pieces(moves, deviation).into_iter().map(stretch).collect()
+    }
 }
 
 /// How it was proven that no point of a solid goes deeper during some moves, for a checker: see the page *Proofs
@@ -260,9 +266,7 @@ impl Enclosed {
 /// Some moves of a cutter.
 fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, asked: Asked) -> Found {
     let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-    let pieces = cutter.pieces(moves, limits.deviation());
-    let stretch = |piece: Piece| Stretch::new(piece.segment, piece.number, piece.times);
-    let stretches: Vec<Stretch> = pieces.into_iter().map(stretch).collect();
+    let stretches = cutter.stretches(moves, limits.deviation());
     let size = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));

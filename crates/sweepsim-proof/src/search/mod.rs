@@ -1,6 +1,7 @@
-//! The search for the deepest point.
+//! The searches for the deepest point and for the nearest.
 
 mod bound;
+mod closest;
 mod deepest;
 mod found;
 mod gouge;
@@ -8,4 +9,5 @@ mod pair;
 mod reach;
 mod trace;
 
+pub use closest::{Closest, closest};
 pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};

@@ -87,7 +87,7 @@ impl Convex {
     }
 
     /// The largest `⟨direction, (ρ, ζ)⟩` for a direction with a first part of at least 0, and where it is.
-    fn meridian_support(&self, direction: [f64; 2]) -> (f64, [f64; 2]) {
+    pub(super) fn meridian_support(&self, direction: [f64; 2]) -> (f64, [f64; 2]) {
         let mut best = (f64::NEG_INFINITY, [0.0; 2]);
         for corner in &self.corners {
             let value = dot(direction, *corner);

@@ -67,7 +67,7 @@ pub(crate) fn waves(height: f64, cells: usize) -> TriangleSoup {
     TriangleSoup { triangles }
 }
 
-fn target(kind: u8, size: f64) -> TriangleSoup {
+pub(super) fn target(kind: u8, size: f64) -> TriangleSoup {
     match kind {
         0 => TriangleSoup::block([-8.0, -6.0, -8.0], [8.0, 6.0, 0.0]),
         1 => sphere([0.0, 0.0, -6.0 * size], 6.0 * size, 12),
@@ -82,7 +82,7 @@ fn target(kind: u8, size: f64) -> TriangleSoup {
     }
 }
 
-fn tool(kind: u8) -> Tool {
+pub(super) fn tool(kind: u8) -> Tool {
     let line = |rho, zeta| ProfileSegment::Line { to: [rho, zeta] };
     let made = match kind {
         0 => Tool::ball(2.0, 12.0),
@@ -140,8 +140,8 @@ fn points(tool: &Tool, rings: usize) -> Vec<Vector3<f64>> {
     outline
 }
 
-/// The radius of a tool at a height.
-fn radius_at(tool: &Tool, height: f64) -> f64 {
+/// The radius of a tool with this outline at a height.
+pub(super) fn radius_at(outline: &[MeridianCurve], height: f64) -> f64 {
     let of_curve = |curve: &MeridianCurve| {
         let (from, to) = (curve.from, curve.to);
         if height < from[1].min(to[1]) || height > from[1].max(to[1]) {
@@ -158,20 +158,20 @@ fn radius_at(tool: &Tool, height: f64) -> f64 {
             _ => from[0] + (to[0] - from[0]) * (height - from[1]) / (to[1] - from[1]),
         }
     };
-    tool.meridians().iter().map(of_curve).fold(f64::NEG_INFINITY, f64::max)
+    outline.iter().map(of_curve).fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[derive(Clone, Debug)]
-struct SceneOf {
-    target: u8,
-    size: f64,
-    tool: u8,
-    motion: u8,
-    tips: [[f64; 3]; 2],
-    axes: [[f64; 3]; 2],
+pub(super) struct SceneOf {
+    pub(super) target: u8,
+    pub(super) size: f64,
+    pub(super) tool: u8,
+    pub(super) motion: u8,
+    pub(super) tips: [[f64; 3]; 2],
+    pub(super) axes: [[f64; 3]; 2],
 }
 
-fn scene() -> impl Strategy<Value = SceneOf> {
+pub(super) fn scene() -> impl Strategy<Value = SceneOf> {
     let tip = || [-7.0..7.0, -7.0..7.0, -1.2..2.5];
     let axis = || (-0.7..0.7, -0.7..0.7).prop_map(|(x, y)| [x, y, 1.0]);
     (0..4_u8, 0.2..1.0, 0..6_u8, 0..5_u8, [tip(), tip()], [axis(), axis()]).prop_map(
@@ -187,7 +187,7 @@ fn scene() -> impl Strategy<Value = SceneOf> {
 }
 
 impl SceneOf {
-    fn path(&self) -> Option<Path> {
+    pub(super) fn path(&self) -> Option<Path> {
         let up = [0.0, 0.0, 1.0];
         let axes = match self.motion {
             0 | 3 => [up; 2],
@@ -249,7 +249,7 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
         // The segments of a proof are so near to the move.
         let off = 1e-3 * limits.width + 1e-6;
         let radius = [-off, 0.0, off]
-            .map(|off| radius_at(&tool, own.z + off))
+            .map(|off| radius_at(&tool.meridians(), own.z + off))
             .into_iter()
             .fold(0.0, f64::max);
         prop_assert!(own.xy().norm() <= radius + 1e-5, "{own} is not in the tool");

@@ -1,0 +1,82 @@
+//! What is proven of what is left standing.
+
+use super::{CHORDS, LISTED, Proven, WIDTH, cutters, limits, pairs};
+use crate::base::JobError;
+use crate::session::Session;
+use std::collections::BTreeMap;
+use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
+use sweepsim_proof::{Convex, Cutter, Limits, Target, highest};
+
+/// If the lines have seen material that is left, how much is left has so many patches to be known better.
+const PATCHES: usize = 200_000;
+
+/// What is proven of excess. `is_seen`: whether some was seen on the lines.
+pub(super) fn excess(session: Session, solid: &Result<Target, String>, is_seen: bool) -> Result<Proven, JobError> {
+    let job = session.job;
+    let [least, most] = limits(job, |[_, excess]| excess);
+    let mut statement = Statement::new("excess", least);
+    statement.measure = Measure::Height;
+    let solid = match solid {
+        Ok(solid) => solid,
+        Err(reason) => {
+            statement.reason = Some(reason.clone());
+            return Ok(Proven::open(statement));
+        }
+    };
+    let cutters: BTreeMap<u32, Vec<Convex>> = cutters(job, CHORDS * least);
+    let along: Vec<Cutter> = super::along(job, &cutters);
+    let wanted = Limits {
+        depth: least,
+        width: WIDTH * least,
+        pairs: if is_seen { PATCHES } else { pairs(job) },
+    };
+    let left = highest(solid, &job.stock, &along, &wanted, session.monitor);
+    let left = left.map_err(|error| session.failure(format!("stock: {error}")))?;
+    let left = left.ok_or(JobError::Cancelled)?;
+    let known = left.highest.map_or(0.0, |(_, height)| height);
+    statement.enclosure = [known, left.bound.min(f64::MAX)];
+    statement.state = if left.bound <= least {
+        StatementState::Proven
+    } else if known > most {
+        StatementState::Refuted
+    } else {
+        StatementState::Open
+    };
+    statement.witness = left.highest.map(|(place, _)| {
+        let mut witness = StatementWitness::default();
+        witness.place = place;
+        witness
+    });
+    let mut findings = Vec::new();
+    match statement.state {
+        StatementState::Refuted => {
+            let mut finding = ReportedFinding::default();
+            finding.kind = "excess".to_owned();
+            finding.between = true;
+            finding.depth = known;
+            finding.place = left.highest.map_or([0.0; 3], |(place, _)| place);
+            findings.push(finding);
+        }
+        StatementState::Open => {
+            let loose = cutters.iter().filter(|(_, solids)| solids.iter().all(Convex::is_loose));
+            let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
+            if known > least {
+                let text = "the limits differ from region to region, and the height is between them";
+                statement.reason = Some(text.to_owned());
+            } else if !loose.is_empty() {
+                let tools = loose.join(", ");
+                let text = format!("it is not known what tools of free-form patches have removed for certain: {tools}");
+                statement.reason = Some(text);
+            }
+            statement.open_count = left.open_count;
+            let place = |[low, high]: &[[f64; 3]; 2]| {
+                let mut place = OpenPlace::default();
+                place.r#box = [low[0], low[1], low[2], high[0], high[1], high[2]];
+                place
+            };
+            statement.open = left.open.iter().take(LISTED).map(place).collect();
+        }
+        _ => {}
+    }
+    Ok(Proven::of(statement, findings))
+}

@@ -1,0 +1,224 @@
+//! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
+
+mod bodies;
+mod excess;
+mod solids;
+
+use super::asked::{Asked, CHORDS, WIDTH, along, cutters, floor, limits, pairs};
+use super::certificate::Certified;
+use super::texts::ProgramTexts;
+use super::work;
+use crate::base::JobError;
+use crate::session::Session;
+use sweepsim_formats::{
+    Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
+};
+use sweepsim_proof::{Enclosed, OpenBox, Target, Witness, deepest_recorded};
+
+/// As many open places are listed.
+const LISTED: usize = 100;
+
+/// A statement with the moves that were seen to break it.
+struct Proven {
+    statement: Statement,
+    findings: Vec<ReportedFinding>,
+    /// For whoever wants to check it.
+    certified: Option<Certified>,
+}
+
+/// Statements, the findings that break them, and what can be checked of them.
+type All = (Vec<Statement>, Vec<ReportedFinding>, Vec<Certified>);
+
+/// What is proven, what was seen to break it but not on the lines, and what can be checked.
+///
+/// `seen`: what was found on these, and whether material was left.
+pub(super) fn statements(
+    session: Session,
+    texts: &mut ProgramTexts,
+    (seen, is_left): (&[ReportedFinding], bool),
+) -> Result<All, JobError> {
+    session.phase("proof");
+    let job = session.job;
+    let mut all = Vec::new();
+    if let Some(target) = &job.target {
+        let solid = solids::of_mesh(&target.mesh, "the target");
+        all.push(gouges(session, texts, &solid)?);
+        if super::directions::compared(session) {
+            all.push(excess::excess(session, &solid, is_left)?);
+        }
+        all.extend(bodies::beside_target(session, texts, &solid)?);
+    }
+    all.extend(bodies::beside_fixtures(session, texts)?);
+    let (mut statements, mut findings, mut all_certified) = (Vec::new(), Vec::new(), Vec::new());
+    for Proven {
+        statement,
+        findings: own,
+        certified,
+    } in all
+    {
+        // What the lines have seen is known better from them.
+        let is_new = |own: &ReportedFinding| {
+            let same = |other: &ReportedFinding| {
+                other.kind == own.kind && (other.path, other.r#move) == (own.path, own.r#move)
+            };
+            !seen.iter().any(same)
+        };
+        findings.extend(own.into_iter().filter(is_new));
+        statements.push(with_lines(statement, seen));
+        all_certified.extend(certified);
+    }
+    Ok((statements, findings, all_certified))
+}
+
+/// What is proven of gouges.
+fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, String>) -> Result<Proven, JobError> {
+    let job = session.job;
+    let [least, most] = limits(job, |[gouge, _]| gouge);
+    let mut statement = Statement::new("gouge", least);
+    let solid = match solid {
+        Ok(solid) => solid,
+        Err(reason) => {
+            statement.reason = Some(reason.clone());
+            return Ok(Proven::open(statement));
+        }
+    };
+    let asked = Asked::new(job);
+    let own: Vec<_> = asked.cutters(job).into_iter().map(|(_, cutter)| cutter).collect();
+    let found = deepest_recorded(solid, &own, &asked.limits, session.monitor).ok_or(JobError::Cancelled)?;
+    let certified = Certified::new(job, solid, &asked, &found);
+    let findings = deep(job, texts, &mut statement, &found, most);
+    let between = statement.state == StatementState::Open && statement.enclosure[0] > least;
+    if between {
+        statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
+    }
+    Ok(Proven {
+        statement,
+        findings,
+        certified,
+    })
+}
+
+/// What is known of depths, in a statement about them; and the moves that go beyond `most`, if it is refuted by that.
+fn deep(
+    job: &Job,
+    texts: &mut ProgramTexts,
+    statement: &mut Statement,
+    found: &Enclosed,
+    most: f64,
+) -> Vec<ReportedFinding> {
+    let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
+    statement.enclosure = [known, found.bound];
+    statement.state = if found.bound <= statement.limit {
+        StatementState::Proven
+    } else if known > most {
+        StatementState::Refuted
+    } else {
+        StatementState::Open
+    };
+    let witness = found.deepest.as_ref();
+    statement.witness = witness.map(|(path, witness)| described(job, texts, *path, witness));
+    statement.open_count = found.open_count;
+    let open = found.open.iter().take(LISTED);
+    statement.open = open.map(|(path, open)| place(job, texts, *path, open)).collect();
+    if statement.state != StatementState::Refuted {
+        return Vec::new();
+    }
+    let deep = found.moves.iter().filter(|(_, witness)| witness.depth > most);
+    deep.map(|(path, witness)| finding(job, texts, &statement.about, *path, witness))
+        .collect()
+}
+
+impl Proven {
+    fn open(statement: Statement) -> Self {
+        Self::of(statement, Vec::new())
+    }
+
+    /// Nothing of it can be checked by others.
+    fn of(statement: Statement, findings: Vec<ReportedFinding>) -> Self {
+        Self {
+            statement,
+            findings,
+            certified: None,
+        }
+    }
+}
+
+fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness) -> StatementWitness {
+    let mut described = StatementWitness::default();
+    (described.path, described.r#move) = (Some(path), Some(witness.number));
+    (described.time, described.place) = (witness.time, witness.place);
+    if let Some((file, line)) = work::place(&job.paths[path], witness.number, &texts.folder) {
+        described.text = texts.line(&file, line);
+        (described.file, described.line) = (Some(file), Some(line));
+    }
+    described
+}
+
+fn place(job: &Job, texts: &ProgramTexts, path: usize, open: &OpenBox) -> OpenPlace {
+    let mut place = OpenPlace::default();
+    (place.path, place.r#move) = (Some(path), Some(open.first.0));
+    place.time = [open.first.1, open.last.1];
+    let ([a, b, c], [d, e, f]) = (open.low, open.high);
+    place.r#box = [a, b, c, d, e, f];
+    if let Some((file, line)) = work::place(&job.paths[path], open.first.0, &texts.folder) {
+        (place.file, place.line) = (Some(file), Some(line));
+    }
+    place
+}
+
+/// A move that breaks a statement.
+fn finding(job: &Job, texts: &mut ProgramTexts, kind: &str, number: usize, witness: &Witness) -> ReportedFinding {
+    let path = &job.paths[number];
+    let mut finding = ReportedFinding::default();
+    finding.kind = kind.to_owned();
+    finding.between = true;
+    (finding.tool, finding.path, finding.r#move) = (Some(path.tool), Some(number), Some(witness.number));
+    finding.setup = job.has_setups.then_some(path.setup);
+    if let Some((file, line)) = work::place(path, witness.number, &texts.folder) {
+        finding.text = texts.line(&file, line);
+        (finding.file, finding.line) = (Some(file), Some(line));
+    }
+    finding.time = Some(witness.time);
+    (finding.place, finding.depth) = (witness.place, witness.depth);
+    finding
+}
+
+/// The same statement, if what was found on the lines refutes it.
+fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Statement {
+    // Collisions are with the workpiece as it is at that time, which may have more than the target.
+    if statement.state != StatementState::Open || !["gouge", "fixture"].contains(&statement.about.as_str()) {
+        return statement;
+    }
+    let own = findings
+        .iter()
+        .filter(|finding| finding.kind == statement.about && !finding.near);
+    let Some(deepest) = own.max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
+        return statement;
+    };
+    statement.state = StatementState::Refuted;
+    // On a line, something is where it may not be: beyond the limit, by how much is not said.
+    match statement.measure {
+        Measure::Distance => statement.enclosure = [0.0; 2],
+        _ => statement.enclosure[0] = statement.enclosure[0].max(statement.limit),
+    }
+    statement.reason = None;
+    let mut witness = StatementWitness::default();
+    (witness.path, witness.r#move) = (deepest.path, deepest.r#move);
+    (witness.file, witness.line) = (deepest.file.clone(), deepest.line);
+    (witness.text, witness.place) = (deepest.text.clone(), deepest.place);
+    witness.time = deepest.time.unwrap_or_default();
+    witness.body.clone_from(&deepest.body);
+    statement.witness = Some(witness);
+    statement
+}
+
+/// The verdict, if statements are asked for as well.
+pub(super) fn verdict(found: Verdict, statements: &[Statement]) -> Verdict {
+    let any = |state| statements.iter().any(|statement| statement.state == state);
+    match found {
+        Verdict::Fail => Verdict::Fail,
+        _ if any(StatementState::Refuted) => Verdict::Fail,
+        _ if any(StatementState::Open) => Verdict::Undecided,
+        _ => Verdict::Pass,
+    }
+}

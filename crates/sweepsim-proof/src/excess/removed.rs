@@ -1,0 +1,248 @@
+//! What the cutters of a program have removed, as far as it is certain.
+
+use crate::motion::{Placement, Run, Stretch};
+use crate::tool::{Convex, Level};
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+
+/// A cutter all along its path.
+pub(super) struct Course<'a> {
+    /// Each solid that covers the cutter; a part of it only if it is exact.
+    solids: Vec<(Run<'a>, Level)>,
+}
+
+/// Of some points, which are held.
+pub(super) type Held = SmallVec<[bool; 12]>;
+
+/// As many stretches are tried for a patch, those deepest around its middle.
+const TRIED: usize = 3;
+/// Steps of a search for the best time.
+const STEPS: usize = 12;
+/// Times at which a motion that turns or bends is looked at first.
+const TIMES: usize = 8;
+/// Parts of time into which a stretch is divided to tell that a point was missed.
+const MOST_PARTS: usize = 500;
+
+/// A stretch of a solid, and how far outside of it a point is at the best time that was found.
+struct Candidate<'a> {
+    level: f64,
+    solid: &'a (Run<'a>, Level),
+    stretch: &'a Stretch,
+    time: f64,
+}
+
+impl<'a> Course<'a> {
+    pub fn new(solids: &'a [Convex], stretches: &'a [Stretch], rounding: f64) -> Self {
+        let of = |solid: &'a Convex| (Run::new(solid, stretches, rounding), Level::new(solid));
+        Self {
+            solids: solids.iter().map(of).collect(),
+        }
+    }
+
+    /// The stretches of exact solids which may hold some points: their boxes may.
+    fn candidates(&'a self, points: &[Vector3<f64>], middle: &Vector3<f64>, all: &mut Vec<Candidate<'a>>) {
+        let (mut low, mut high) = (points[0], points[0]);
+        for point in points {
+            (low, high) = (low.inf(point), high.sup(point));
+        }
+        for solid in self.solids.iter().filter(|(run, _)| run.solid.is_exact()) {
+            let (run, level) = solid;
+            run.around(&low, &high, &mut |stretch| {
+                let (value, time) = quick(level, stretch, middle);
+                all.push(Candidate {
+                    level: value,
+                    solid,
+                    stretch,
+                    time,
+                });
+                true
+            });
+        }
+    }
+
+    /// Whether no cutter holds the point at any time, for certain.
+    fn misses(&self, point: &Vector3<f64>, margin: f64) -> bool {
+        self.solids
+            .iter()
+            .all(|(run, level)| run.around(point, point, &mut |stretch| stays_away(level, stretch, point, margin)))
+    }
+}
+
+/// All that the cutters of a program have removed.
+pub(super) struct Removed<'a> {
+    pub courses: Vec<Course<'a>>,
+    /// What a point has to be inside, or outside, to be so for certain.
+    pub margin: f64,
+}
+
+impl Removed<'_> {
+    /// Which of some points were certainly removed by one and the same convex solid: if all of them, so was their hull.
+    /// `middle`: a point among them, around which the solid is chosen; and whether it was removed itself.
+    pub fn held(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> (Held, bool) {
+        let mut all = Vec::new();
+        for course in &self.courses {
+            course.candidates(points, middle, &mut all);
+        }
+        let by_level = |a: &Candidate, b: &Candidate| a.level.total_cmp(&b.level);
+        if all.len() > TRIED {
+            all.select_nth_unstable_by(TRIED, by_level);
+            all.truncate(TRIED);
+        }
+        all.sort_by(by_level);
+        let is_removed = all.first().is_some_and(|best| best.level <= -self.margin);
+        let mut held = all.iter().map(|candidate| self.held_by(points, middle, candidate));
+        let Some(first) = held.next().filter(|held| held.contains(&true)) else {
+            return (points.iter().map(|_| false).collect(), is_removed);
+        };
+        let is_whole = |held: &Held| !held.contains(&false);
+        if is_whole(&first) {
+            return (first, true);
+        }
+        (held.find(is_whole).unwrap_or(first), is_removed)
+    }
+
+    fn held_by(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, candidate: &Candidate) -> Held {
+        let (_, level) = candidate.solid;
+        let stretch = candidate.stretch;
+        if stretch.is_straight() {
+            // The solid sweeps a convex one.
+            let own = points.iter();
+            own.map(|point| best(level, stretch, point, -self.margin) <= -self.margin)
+                .collect()
+        } else {
+            let near = 1.0 / TIMES as f64;
+            let (from, to) = ((candidate.time - near).max(0.0), (candidate.time + near).min(1.0));
+            let time = best_time(level, stretch, middle, from, to);
+            let at = stretch.at(time);
+            let own = points.iter();
+            own.map(|point| level_at(level, &at, point) <= -self.margin).collect()
+        }
+    }
+
+    /// Whether a point was certainly not removed.
+    pub fn misses(&self, point: &Vector3<f64>) -> bool {
+        self.courses.iter().all(|course| course.misses(point, self.margin))
+    }
+}
+
+fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f64 {
+    let off = point - at.tip;
+    let along = off.dot(&at.axis);
+    level.at([(off - at.axis * along).norm(), along])
+}
+
+/// A time at which a point is far inside, without a search; and the level then.
+fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
+    let of = |time: f64| (level_at(level, &stretch.at(time), point), time);
+    let times: SmallVec<[f64; TIMES + 1]> = if stretch.is_straight() {
+        let [from, to] = &stretch.ends;
+        let way = to.tip - from.tip;
+        let across = way - from.axis * way.dot(&from.axis);
+        let length = across.norm_squared();
+        let nearest = if length > 0.0 {
+            ((point - from.tip).dot(&across) / length).clamp(0.0, 1.0)
+        } else {
+            0.5
+        };
+        [nearest].into_iter().collect()
+    } else {
+        (0..=TIMES).map(|k| k as f64 / TIMES as f64).collect()
+    };
+    let all = times.into_iter().map(of);
+    all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0.0))
+}
+
+/// The least level of a point that was found, or the first that is low enough. Along a straight stretch it is convex.
+fn best(level: &Level, stretch: &Stretch, point: &Vector3<f64>, enough: f64) -> f64 {
+    let (mut from, mut to) = (0.0, 1.0);
+    let of = |time: f64| level_at(level, &stretch.at(time), point);
+    let mut least = quick(level, stretch, point).0;
+    for _ in 0..STEPS {
+        if least <= enough {
+            return least;
+        }
+        let third = (to - from) / 3.0;
+        let (a, b) = (of(from + third), of(to - third));
+        least = least.min(a).min(b);
+        if a < b {
+            to -= third;
+        } else {
+            from += third;
+        }
+    }
+    least.min(of(from)).min(of(to))
+}
+
+fn best_time(level: &Level, stretch: &Stretch, point: &Vector3<f64>, mut from: f64, mut to: f64) -> f64 {
+    let of = |time: f64| level_at(level, &stretch.at(time), point);
+    for _ in 0..STEPS {
+        let third = (to - from) / 3.0;
+        if of(from + third) < of(to - third) {
+            to -= third;
+        } else {
+            from += third;
+        }
+    }
+    0.5 * (from + to)
+}
+
+/// Whether a point is outside of a solid all along a stretch: levels change no faster than the point moves against it.
+fn stays_away(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
+    if stretch.is_straight() {
+        return stays_beside(level, stretch, point, margin);
+    }
+    let mut open: SmallVec<[[f64; 2]; 32]> = SmallVec::new();
+    open.push([0.0, 1.0]);
+    let mut left = MOST_PARTS;
+    while let Some([from, to]) = open.pop() {
+        let middle = 0.5 * (from + to);
+        let at = stretch.at(middle);
+        let own = level_at(level, &at, point);
+        // The point moves against the solid as if it were a point of it.
+        let half = 0.5 * (to - from);
+        let far = (point - at.tip).norm();
+        let travel = stretch.travel(far + stretch.travel(0.0, half), half);
+        if own > travel + margin {
+            continue;
+        }
+        if own <= margin || left == 0 {
+            return false;
+        }
+        left -= 1;
+        open.extend([[from, middle], [middle, to]]);
+    }
+    true
+}
+
+/// The same along a straight stretch. There the level is convex: its least value is in the interval that is left.
+fn stays_beside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
+    let of = |time: f64| level_at(level, &stretch.at(time), point);
+    // It is never nearer to the axis than this, and its height along it changes evenly: by little, on most stretches.
+    let [start, end] = &stretch.ends;
+    let (off, way) = (point - start.tip, end.tip - start.tip);
+    let rise = way.dot(&start.axis);
+    let [off_across, way_across] = [off, way].map(|v| v - start.axis * v.dot(&start.axis));
+    let part = off_across.dot(&way_across) / way_across.norm_squared().max(f64::MIN_POSITIVE);
+    let nearest = (off_across - way_across * part.clamp(0.0, 1.0)).norm();
+    if level.at([nearest, off.dot(&start.axis) - 0.5 * rise]) > 0.5 * rise.abs() + margin {
+        return true;
+    }
+    let (mut from, mut to, mut least) = (0.0, 1.0, quick(level, stretch, point).0);
+    for _ in 0..4 * STEPS {
+        if least <= margin {
+            return false;
+        }
+        if least > margin + stretch.travel(0.0, to - from) {
+            return true;
+        }
+        let third = (to - from) / 3.0;
+        let (a, b) = (of(from + third), of(to - third));
+        least = least.min(a).min(b);
+        if a < b {
+            to -= third;
+        } else {
+            from += third;
+        }
+    }
+    false
+}

@@ -1,0 +1,350 @@
+//! The search for the highest place that is left standing.
+
+use super::removed::{Course, Removed};
+use super::stock::Before;
+use super::surface::Patch;
+use crate::search::{Cutter, Limits};
+use crate::solid::Target;
+use crate::tool::Convex;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use sweepsim_dexel::{MeshError, Stock};
+use sweepsim_solve::Monitor;
+
+/// What is left standing around a target.
+#[derive(Clone, Debug)]
+pub struct Left {
+    /// A place that is left, and how far it is from the target: the farthest that was found.
+    pub highest: Option<([f64; 3], f64)>,
+    /// Nothing that hangs together with the target is farther from it.
+    pub bound: f64,
+    /// Boxes of places of which it is not known whether they are left: some of them.
+    pub open: Vec<[[f64; 3]; 2]>,
+    /// How many they are.
+    pub open_count: usize,
+    /// Patches that were looked at.
+    pub patches: usize,
+}
+
+/// As many distances are tried.
+const ROUNDS: usize = 6;
+/// What is far from the target need not be known better than this part of it.
+const SHARE: f64 = 1.0 / 64.0;
+/// The surface is divided into at least so many patches, so that all threads have work.
+const PARTS: f64 = 512.0;
+/// At first, so many parts of every patch are looked at.
+const LOOKS: [usize; 2] = [4, 64];
+/// Patches smaller than this part of the distance are not divided.
+const FINEST: f64 = 1e-3;
+/// As many open places are described, of each part of the surface.
+const MOST_OPEN: usize = 4;
+/// Coordinates of this size are exact to 1.
+const ROUNDING: f64 = 1e-12;
+/// Higher places are looked for where they are higher by this part of the wanted width.
+const FINER: f64 = 0.1;
+/// How far a place is that is left is known this well.
+const STEPS: usize = 24;
+
+/// Encloses how far what is left of a stock stands beyond a target. `None` if the monitor cancelled the work.
+///
+/// # Errors
+/// The stock has too many vertices.
+pub fn highest(
+    target: &Target,
+    stock: &Stock,
+    cutters: &[Cutter],
+    limits: &Limits,
+    monitor: &dyn Monitor,
+) -> Result<Option<Left>, MeshError> {
+    let before = Before::new(stock)?;
+    let mut size = target.size;
+    let mut motions = Vec::with_capacity(cutters.len());
+    for cutter in cutters {
+        let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        // Other courses of rapids are only possible.
+        let own = Cutter {
+            others: None,
+            ..*cutter
+        };
+        let all = own.stretches(0..cutter.path.moves(), limits.deviation());
+        let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
+        size = far.fold(size, f64::max) + reach;
+        motions.push(all);
+    }
+    let courses = cutters.iter().zip(&motions);
+    let removed = Removed {
+        courses: courses
+            .map(|(cutter, all)| Course::new(cutter.solids, all, ROUNDING * size))
+            .collect(),
+        margin: limits.deviation() + ROUNDING * size,
+    };
+    let scene = Scene {
+        target,
+        before,
+        removed,
+        patches: parts(Patch::around(&target.triangles)),
+    };
+    Ok(scene.search(limits, monitor))
+}
+
+/// Patches, the large ones divided.
+fn parts(patches: Vec<Patch>) -> Vec<Patch> {
+    let length = |patch: &Patch| {
+        let pairs = patch.corners.iter().enumerate();
+        let pairs = pairs.flat_map(|(k, a)| patch.corners[..k].iter().map(move |b| (a - b).norm()));
+        pairs.fold(0.0, f64::max)
+    };
+    let total: f64 = patches.iter().map(|patch| length(patch).powi(2)).sum();
+    let largest = (total / PARTS).sqrt();
+    let (mut open, mut all) = (patches, Vec::new());
+    while let Some(patch) = open.pop() {
+        match patch
+            .halves(0.0, f64::MIN_POSITIVE, &[])
+            .filter(|_| length(&patch) > largest)
+        {
+            Some(halves) => open.extend(halves),
+            None => all.push(patch),
+        }
+    }
+    all
+}
+
+struct Scene<'a> {
+    target: &'a Target,
+    before: Before,
+    removed: Removed<'a>,
+    patches: Vec<Patch>,
+}
+
+/// What was found of a distance.
+#[derive(Default)]
+struct Found {
+    highest: Option<(Vector3<f64>, f64)>,
+    /// Whether some of the surface is left.
+    is_left: bool,
+    open: Vec<[[f64; 3]; 2]>,
+    open_count: usize,
+    patches: usize,
+}
+
+impl Found {
+    fn height(&self) -> f64 {
+        self.highest.map_or(0.0, |(_, height)| height)
+    }
+
+    fn take(&mut self, place: Vector3<f64>, height: f64) {
+        if height > self.height() {
+            self.highest = Some((place, height));
+        }
+    }
+
+    fn join(mut self, other: Self) -> Self {
+        if let Some((place, height)) = other.highest {
+            self.take(place, height);
+        }
+        self.is_left |= other.is_left;
+        self.open.extend(other.open);
+        self.open_count += other.open_count;
+        self.patches += other.patches;
+        self
+    }
+}
+
+impl Scene<'_> {
+    fn search(&self, limits: &Limits, monitor: &dyn Monitor) -> Option<Left> {
+        let mut left = Left {
+            highest: None,
+            bound: f64::INFINITY,
+            open: Vec::new(),
+            open_count: 0,
+            patches: 0,
+        };
+        let mut distance = limits.width;
+        for _ in 0..ROUNDS {
+            let spent = limits.pairs.saturating_sub(left.patches);
+            let known = left.highest.map_or(0.0, |(_, height)| height);
+            let found = self.at_distance(distance, (known, limits.width), spent, monitor)?;
+            left.patches += found.patches;
+            if let Some((place, height)) = found.highest.filter(|(_, height)| *height > known) {
+                left.highest = Some((place.into(), height));
+            }
+            let is_done = !found.is_left && found.open_count == 0;
+            (left.open, left.open_count) = (found.open, found.open_count);
+            if is_done {
+                left.bound = distance;
+                break;
+            }
+            if spent == 0 {
+                break;
+            }
+            let known = left.highest.map_or(0.0, |(_, height)| height);
+            let above = known + limits.width.max(SHARE * known);
+            // Whether the limit is kept comes before how far above the bound is.
+            let undecided = known < limits.depth && distance < limits.depth;
+            distance = match found.is_left && above > distance {
+                true if undecided => above.min(limits.depth),
+                true => above,
+                false if undecided => limits.depth,
+                false => 2.0 * distance,
+            };
+        }
+        // What stands higher than the limit leaves it open no more whether it is kept.
+        if left.highest.is_some_and(|(_, height)| height > limits.depth) {
+            (left.open, left.open_count) = (Vec::new(), 0);
+        }
+        Some(left)
+    }
+
+    /// Whether anything is left at a distance from the target; and how far it reaches. `known`: so far, for certain.
+    fn at_distance(
+        &self,
+        distance: f64,
+        (known, width): (f64, f64),
+        patches: usize,
+        monitor: &dyn Monitor,
+    ) -> Option<Found> {
+        let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
+        let mut open: Vec<usize> = (0..self.patches.len()).collect();
+        // Short looks everywhere, then what is left.
+        for look in 0..=LOOKS.len() {
+            let each = match LOOKS.get(look) {
+                Some(each) => *each,
+                None => LOOKS[LOOKS.len() - 1].max(patches / open.len().max(1)),
+            };
+            let (done, total) = (AtomicUsize::new(0), open.len());
+            let look = |number: &usize| {
+                if monitor.cancelled() {
+                    return None;
+                }
+                let mut search = Search {
+                    scene: self,
+                    distance,
+                    known,
+                    finer: FINER * width,
+                    found: Found::default(),
+                };
+                search.look(self.patches[*number].clone(), each);
+                let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+                if done.is_multiple_of(64) || done == total {
+                    monitor.advance(done, total);
+                }
+                Some(search.found)
+            };
+            let again: Vec<Found> = open.par_iter().map(look).collect::<Option<_>>()?;
+            for (number, mut again) in open.iter().zip(again) {
+                again.patches += found[*number].patches;
+                found[*number] = again;
+            }
+            open.retain(|number| found[*number].open_count > 0);
+            // Around what is left there is always something open.
+            if found.iter().any(|found| found.is_left) {
+                break;
+            }
+        }
+        Some(found.into_iter().fold(Found::default(), Found::join))
+    }
+
+    fn is_left(&self, point: &Vector3<f64>) -> bool {
+        self.before.holds(point) && self.removed.misses(point)
+    }
+
+    /// How far a point is from the target; less than 0 inside.
+    fn height(&self, point: &Vector3<f64>) -> f64 {
+        -self.target.depth((*point).into())
+    }
+}
+
+/// The search in a patch.
+struct Search<'a> {
+    scene: &'a Scene<'a>,
+    distance: f64,
+    known: f64,
+    /// Places that are not higher by so much are not looked for.
+    finer: f64,
+    found: Found,
+}
+
+impl Search<'_> {
+    fn look(&mut self, patch: Patch, most: usize) {
+        let mut open = vec![patch];
+        while let Some(patch) = open.pop() {
+            let Some((points, middle)) = patch.points(self.distance) else {
+                match patch.halves(self.distance, 0.0, &[]) {
+                    Some(halves) => open.extend(halves),
+                    None => self.leave(&patch.corners),
+                }
+                continue;
+            };
+            self.found.patches += 1;
+            let scene = self.scene;
+            if scene.before.misses(&points, &middle, &patch.middle().1) {
+                continue;
+            }
+            let (held, is_removed) = scene.removed.held(&points, &middle);
+            if !held.contains(&false) || self.is_near(&points, &middle) {
+                continue;
+            }
+            if !is_removed && scene.is_left(&middle) {
+                let height = scene.height(&middle) - scene.removed.margin;
+                self.found.take(middle, height);
+                // Else the middle is not of the surface.
+                if height > self.distance * (1.0 - SHARE) {
+                    self.found.is_left = true;
+                    self.rise(&patch);
+                    continue;
+                }
+            }
+            match patch.halves(self.distance, FINEST * self.distance, &held) {
+                Some(halves) if self.found.patches < most => open.extend(halves),
+                _ => self.leave(&points),
+            }
+        }
+    }
+
+    /// Whether the hull of some points is nearer to a triangle than the distance.
+    fn is_near(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> bool {
+        let triangle = self.scene.target.distance.nearest_triangle((*middle).into());
+        let least = self.distance - self.scene.removed.margin;
+        triangle.is_some_and(|triangle| {
+            let all = points.iter().map(|point| triangle.distance_of((*point).into()));
+            triangle.distance < least && { all }.all(|distance| distance < least)
+        })
+    }
+
+    /// Looks how far what is left reaches, above a place where something is left.
+    fn rise(&mut self, patch: &Patch) {
+        let scene = self.scene;
+        let (from, up) = patch.middle();
+        // Only if it is higher than what is known.
+        let known = self.known.max(self.found.height());
+        let at = |height: f64| from + up * height;
+        let is_left = |height: f64| scene.is_left(&at(height));
+        let mut low = known.max(self.distance) + self.finer;
+        if !is_left(low) {
+            return;
+        }
+        let mut high = 2.0 * low;
+        while is_left(high) {
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..STEPS {
+            let middle = 0.5 * (low + high);
+            if is_left(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.found.take(at(low), scene.height(&at(low)) - scene.removed.margin);
+    }
+
+    fn leave(&mut self, points: &[Vector3<f64>]) {
+        self.found.open_count += 1;
+        if self.found.open.len() < MOST_OPEN {
+            let low = points.iter().fold(points[0], |low, point| low.inf(point));
+            let high = points.iter().fold(points[0], |high, point| high.sup(point));
+            self.found.open.push([low.into(), high.into()]);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What there was before the first cut.
+
+use nalgebra::Vector3;
+use sweepsim_dexel::{DistanceTo, MeshError, Stock};
+
+/// A stock, prepared for what is asked of it here.
+pub(super) enum Before {
+    Block([Vector3<f64>; 2]),
+    Cylinder {
+        base: Vector3<f64>,
+        axis: Vector3<f64>,
+        radius: f64,
+        height: f64,
+    },
+    Ball(Vector3<f64>, f64),
+    Mesh(DistanceTo),
+    /// Something within a box.
+    Within([Vector3<f64>; 2]),
+    Union(Vec<Self>),
+    Intersection(Vec<Self>),
+    Difference(Box<Self>, Vec<Self>),
+}
+
+impl Before {
+    pub fn new(stock: &Stock) -> Result<Self, MeshError> {
+        let all = |parts: &[Stock]| parts.iter().map(Self::new).collect::<Result<Vec<_>, _>>();
+        Ok(match stock {
+            Stock::Block { min, max } => Self::Block([(*min).into(), (*max).into()]),
+            Stock::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => Self::Cylinder {
+                base: (*base).into(),
+                axis: Vector3::from(*axis).normalize(),
+                radius: *radius,
+                height: *height,
+            },
+            Stock::Ball { centre, radius } => Self::Ball((*centre).into(), *radius),
+            Stock::Mesh(soup) => Self::Mesh(DistanceTo::new(soup)?),
+            Stock::Union(parts) => Self::Union(all(parts)?),
+            Stock::Intersection(parts) => Self::Intersection(all(parts)?),
+            Stock::Difference(whole, parts) => Self::Difference(Box::new(Self::new(whole)?), all(parts)?),
+            // Dexels, which say nothing of what is between them.
+            _ => match stock.bounds() {
+                Some(ends) => Self::Within(ends.map(Vector3::from)),
+                None => Self::Union(Vec::new()),
+            },
+        })
+    }
+
+    /// Whether none of it is in the hull of some points, for certain. `middle`: a point among them; `normal`: a
+    /// direction away from the stock, if they are beside it.
+    pub fn misses(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
+        let least = |direction: &Vector3<f64>| {
+            let values = points.iter().map(|point| point.dot(direction));
+            values.fold(f64::INFINITY, f64::min)
+        };
+        match self {
+            Self::Block([low, high]) | Self::Within([low, high]) => {
+                let farthest = low.zip_zip_map(high, normal, |low, high, n| n * if n < 0.0 { low } else { high });
+                let beyond = |k: usize| {
+                    points.iter().all(|point| point[k] > high[k]) || points.iter().all(|point| point[k] < low[k])
+                };
+                least(normal) > farthest.sum() || (0..3).any(beyond)
+            }
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let off = middle - base;
+                let across = (off - axis * off.dot(axis)).try_normalize(1e-12);
+                let along = normal.dot(axis);
+                let farthest = normal.dot(base) + (along * height).max(0.0) + radius * (normal - axis * along).norm();
+                least(normal) > farthest
+                    || least(axis) > base.dot(axis) + height
+                    || least(&-axis) > -base.dot(axis)
+                    || across.is_some_and(|across| least(&across) > base.dot(&across) + radius)
+            }
+            Self::Ball(centre, radius) => {
+                let away = (middle - centre).try_normalize(1e-12);
+                away.is_some_and(|away| least(&away) > centre.dot(&away) + radius)
+            }
+            Self::Mesh(distance) => {
+                let size = points.iter().map(|point| (point - middle).norm());
+                let size = size.fold(0.0, f64::max);
+                let nearest = distance.nearest((*middle).into());
+                nearest.is_none_or(|nearest| nearest.distance > size * (1.0 + 1e-9) + 1e-12)
+            }
+            Self::Union(parts) => parts.iter().all(|part| part.misses(points, middle, normal)),
+            Self::Intersection(parts) => {
+                parts.is_empty() || parts.iter().any(|part| part.misses(points, middle, normal))
+            }
+            Self::Difference(whole, _) => whole.misses(points, middle, normal),
+        }
+    }
+
+    /// Whether a point is in it, for certain.
+    pub fn holds(&self, point: &Vector3<f64>) -> bool {
+        match self {
+            Self::Block([low, high]) => (0..3).all(|k| point[k] > low[k] && point[k] < high[k]),
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let off = point - base;
+                let along = off.dot(axis);
+                along > 0.0 && along < *height && (off - axis * along).norm() < *radius
+            }
+            Self::Ball(centre, radius) => (point - centre).norm() < *radius,
+            Self::Mesh(distance) => {
+                let nearest = distance.nearest((*point).into());
+                nearest.is_some_and(|nearest| nearest.distance < 0.0)
+            }
+            Self::Within(_) => false,
+            Self::Union(parts) => parts.iter().any(|part| part.holds(point)),
+            Self::Intersection(parts) => !parts.is_empty() && parts.iter().all(|part| part.holds(point)),
+            Self::Difference(whole, parts) => {
+                whole.holds(point) && parts.iter().all(|part| part.misses(&[*point], point, &Vector3::z()))
+            }
+        }
+    }
+}

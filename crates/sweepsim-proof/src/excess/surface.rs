@@ -1,0 +1,236 @@
+//! The points at a distance from a solid, in patches.
+//!
+//! A point at the distance `d` from a solid has a nearest point on it: in a triangle, on an edge or at a corner. It lies
+//! from there along a direction between the normals of the triangles around (for a corner: their spherical hull), so
+//! every such point is in a patch of a triangle with its normal, of an edge with two, or of a corner with all of its.
+//! Edges between triangles that turn inwards have no such point, nor have corners with only such edges.
+
+use crate::solid::Triangle;
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+use std::collections::HashMap;
+
+type Vectors = SmallVec<[Vector3<f64>; 3]>;
+type Points = SmallVec<[Vector3<f64>; 12]>;
+
+/// The points from a corner, an edge or a triangle along directions between some normals.
+#[derive(Clone, Debug)]
+pub(super) struct Patch {
+    pub corners: Vectors,
+    normals: Vectors,
+}
+
+/// Normals farther apart are divided before corners are: on one side, a patch may be beyond the stock, on the other be
+/// removed.
+const WIDE: f64 = 0.3;
+/// No patch is made so many times longer than it is wide, on purpose.
+const THIN: f64 = 4096.0;
+/// Normals that differ less are the same, for what a patch is: every test of it has a larger margin.
+const SAME: f64 = 1e-10;
+
+impl Patch {
+    /// The patches of the surface around a solid.
+    pub fn around(triangles: &[Triangle]) -> Vec<Self> {
+        let mut numbers = HashMap::new();
+        let mut places: Vec<Vector3<f64>> = Vec::new();
+        let mut faces = Vec::with_capacity(triangles.len());
+        for triangle in triangles {
+            faces.push(triangle.corners.map(|corner| {
+                let key = [corner.x, corner.y, corner.z].map(|c| (c + 0.0).to_bits());
+                *numbers.entry(key).or_insert_with(|| {
+                    places.push(corner);
+                    places.len() - 1
+                })
+            }));
+        }
+        let mut all: Vec<Self> = Vec::with_capacity(3 * triangles.len());
+        let mut around: Vec<Vectors> = vec![Vectors::new(); places.len()];
+        let mut outwards = vec![false; places.len()];
+        // The triangle on the left of each edge, and its corner off the edge.
+        let mut sides: HashMap<(usize, usize), (usize, usize)> = HashMap::with_capacity(3 * faces.len());
+        for (number, face) in faces.iter().enumerate() {
+            for k in 0..3 {
+                sides.insert((face[k], face[(k + 1) % 3]), (number, face[(k + 2) % 3]));
+            }
+        }
+        for (triangle, face) in triangles.iter().zip(&faces) {
+            all.push(Self {
+                corners: triangle.corners.into_iter().collect(),
+                normals: [triangle.normal].into_iter().collect(),
+            });
+            for k in 0..3 {
+                let [a, b] = [face[k], face[(k + 1) % 3]];
+                around[a].push(triangle.normal);
+                // With a triangle without area between, nothing is known of the edge: it is taken as it is.
+                let other = sides.get(&(b, a));
+                if a > b && other.is_some() {
+                    continue;
+                }
+                let (normal, rises) = match other {
+                    Some((other, off)) => {
+                        let rise = triangle.normal.dot(&(places[*off] - places[a]));
+                        (triangles[*other].normal, rise < 0.0)
+                    }
+                    None => (triangle.normal, true),
+                };
+                if rises {
+                    outwards[a] = true;
+                    outwards[b] = true;
+                    if (normal - triangle.normal).norm() > SAME {
+                        all.push(Self {
+                            corners: [places[a], places[b]].into_iter().collect(),
+                            normals: [triangle.normal, normal].into_iter().collect(),
+                        });
+                    }
+                }
+            }
+        }
+        for ((place, normals), outwards) in places.iter().zip(&around).zip(outwards) {
+            if outwards {
+                all.extend(Self::at_corner(place, normals));
+            }
+        }
+        all
+    }
+
+    fn at_corner(place: &Vector3<f64>, normals: &[Vector3<f64>]) -> Vec<Self> {
+        let mut own = Vectors::new();
+        for normal in normals {
+            if !own.iter().any(|other| (other - normal).norm() <= SAME) {
+                own.push(*normal);
+            }
+        }
+        let patch = |normals: Vectors| Self {
+            corners: [*place].into_iter().collect(),
+            normals,
+        };
+        match own.len() {
+            // Of the edges.
+            0..=2 => Vec::new(),
+            3 => vec![patch(own)],
+            _ => {
+                let whole = patch(own);
+                if whole.spread() <= WIDE {
+                    return vec![whole];
+                }
+                // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
+                let own = &whole.normals;
+                let mut all = Vec::new();
+                for i in 0..own.len() {
+                    for j in 0..i {
+                        for k in 0..j {
+                            all.push(patch([own[i], own[j], own[k]].into_iter().collect()));
+                        }
+                    }
+                }
+                all
+            }
+        }
+    }
+
+    /// The largest sine of half the angle between two normals, twice.
+    fn spread(&self) -> f64 {
+        let pairs = self.normals.iter().enumerate();
+        pairs
+            .flat_map(|(k, a)| self.normals[..k].iter().map(move |b| (a - b).norm()))
+            .fold(0.0, f64::max)
+    }
+
+    /// Points whose hull has every point of the patch at the distance `d`; and about the middle of it.
+    ///
+    /// Unit vectors `u` between normals `nᵢ` are between the planes `⟨m, u⟩ = c` and `1`, if `m` is a unit vector and
+    /// `c` the least `⟨m, nᵢ⟩`: and so in the hull of the `nᵢ`, scaled to both. `None` if they look in all directions.
+    pub fn points(&self, d: f64) -> Option<(Points, Vector3<f64>)> {
+        let mean = self.normals.iter().sum::<Vector3<f64>>().try_normalize(1e-3)?;
+        let least = self.normals.iter().map(|normal| normal.dot(&mean));
+        let least = least.fold(f64::INFINITY, f64::min);
+        if least < 0.1 {
+            return None;
+        }
+        let mut points = SmallVec::new();
+        for corner in &self.corners {
+            for normal in &self.normals {
+                let high = normal * (d / normal.dot(&mean));
+                points.push(corner + high);
+                if self.normals.len() > 1 {
+                    points.push(corner + high * least);
+                }
+            }
+        }
+        let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
+        Some((points, middle + mean * d))
+    }
+
+    /// The middle of what the patch is of, and a direction.
+    pub fn middle(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
+        let mean = self.normals.iter().sum::<Vector3<f64>>();
+        (middle, mean.try_normalize(1e-3).unwrap_or(self.normals[0]))
+    }
+
+    /// Two parts of it, or nothing if it is as small as it should be. `held`: which of its points are held; corners of
+    /// which one is and the other is not are parted, so that what is left is thin.
+    pub fn halves(&self, d: f64, least: f64, held: &[bool]) -> Option<[Self; 2]> {
+        let longest = |vectors: &Vectors| {
+            let mut best = (0.0, 0, 0);
+            for i in 0..vectors.len() {
+                for j in 0..i {
+                    let length = (vectors[i] - vectors[j]).norm();
+                    if length > best.0 {
+                        best = (length, i, j);
+                    }
+                }
+            }
+            best
+        };
+        let (length, mut i, mut j) = longest(&self.corners);
+        let (angle, k, l) = longest(&self.normals);
+        if length.max(d * angle) < least {
+            return None;
+        }
+        let replaced = |vectors: &Vectors, at: usize, by: Vector3<f64>| {
+            let mut vectors = vectors.clone();
+            vectors[at] = by;
+            vectors
+        };
+        // More normals than three are close to each other.
+        let is_wide = angle > WIDE && d > 0.0;
+        if self.normals.len() > 3 || length >= d * angle && !is_wide {
+            let of_corner = |corner: usize| {
+                let each = held.len() / self.corners.len();
+                held[corner * each..(corner + 1) * each].iter().all(|held| *held)
+            };
+            let is_held: SmallVec<[bool; 3]> = (0..self.corners.len()).map(of_corner).collect();
+            let area = match self.corners[..] {
+                [a, b, c] => (b - a).cross(&(c - a)).norm(),
+                _ => length * length,
+            };
+            if is_held.contains(&true) && is_held.contains(&false) && area > length * length / THIN {
+                let mut own = 0.0;
+                for (a, b) in [(1, 0), (2, 0), (2, 1)].into_iter().filter(|(a, _)| *a < is_held.len()) {
+                    let between = (self.corners[a] - self.corners[b]).norm();
+                    if is_held[a] != is_held[b] && between > own {
+                        (own, i, j) = (between, a, b);
+                    }
+                }
+            }
+            let middle = (self.corners[i] + self.corners[j]) * 0.5;
+            return (length > 0.0).then(|| {
+                [i, j].map(|end| Self {
+                    corners: replaced(&self.corners, end, middle),
+                    normals: self.normals.clone(),
+                })
+            });
+        }
+        let middle = (self.normals[k] + self.normals[l]).try_normalize(1e-9);
+        // Opposite normals: by way of any direction across.
+        let middle = middle.unwrap_or_else(|| {
+            let axis = Vector3::ith(self.normals[k].iamin(), 1.0);
+            self.normals[k].cross(&axis).normalize()
+        });
+        Some([k, l].map(|end| Self {
+            corners: self.corners.clone(),
+            normals: replaced(&self.normals, end, middle),
+        }))
+    }
+}

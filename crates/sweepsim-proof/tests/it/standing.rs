@@ -1,0 +1,175 @@
+//! What is left standing in a slot.
+
+use crate::scenes::{radius_at, target, tool};
+use crate::walls::slot;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
+use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
+use sweepsim_motion::{Path, Pose, Tool};
+use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
+
+const LIMITS: Limits = Limits {
+    depth: 0.02,
+    width: 0.002,
+    pairs: 500_000,
+};
+
+fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
+    let up = [0.0, 0.0, 1.0];
+    let poses = tips.iter().map(|tip| Pose::new(*tip, up).expect("a pose"));
+    let path = Path::new(poses.collect()).expect("a path");
+    let stock = Stock::Block {
+        min: [-30.0, -20.0, -10.0],
+        max: [30.0, 20.0, 10.0],
+    };
+    let solids = cover(tool, 1e-4);
+    let cutter = Cutter {
+        solids: &solids,
+        path: &path,
+        others: None,
+    };
+    let target = Target::new(target).expect("closed");
+    let left = highest(&target, &stock, &[cutter], &LIMITS, &());
+    left.expect("a stock").expect("not cancelled")
+}
+
+fn check(target: &TriangleSoup, truth: f64) {
+    let tool = Tool::flat(5.0, 30.0).expect("a tool");
+    let tips = [
+        [-40.0, 0.0, 15.0],
+        [-40.0, 0.0, 2.0],
+        [40.0, 0.0, 2.0],
+        [40.0, 0.0, 15.0],
+    ];
+    let found = left(target, &tool, &tips);
+    let known = found.highest.map_or(0.0, |(_, height)| height);
+    assert!(
+        found.open.is_empty(),
+        "{truth}: {} open, {:?}, bound {}",
+        found.open_count,
+        found.open[0],
+        found.bound
+    );
+    assert!(known <= truth + 1e-9 && truth <= found.bound, "{truth}: {found:?}");
+    assert!(found.bound - known <= 0.1 * LIMITS.depth + 1e-6, "{truth}: {found:?}");
+    assert_eq!(found.bound <= LIMITS.depth, truth <= LIMITS.depth);
+}
+
+#[test]
+fn what_is_left_of_walls_and_floors_is_enclosed() {
+    check(&slot(-5.0, 5.0, 2.0), 0.0);
+    for off in [0.1, 0.05, 0.021, 0.019] {
+        check(&slot(-5.0, 5.0 + off, 2.0), off);
+        check(&slot(-5.0, 5.0, 2.0 - off), off);
+    }
+}
+
+/// A raster of a random tool over a random target: what is left along normals of the target must be within the bound,
+/// as far as it hangs together with the target. Whether anything is left, and whether nothing is open.
+fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Result<[bool; 2], TestCaseError> {
+    let (soup, tool) = (target(kinds.0, size), tool(kinds.1));
+    let solid = Target::new(&soup).expect("closed");
+    let distance = DistanceTo::new(&soup).expect("few vertices");
+    // The tip follows the top of the target as a ball would, roughly; the bound must hold however it goes.
+    let top = |x: f64, y: f64| {
+        let drop = distance.nearest([x, y, 20.0]).map_or(0.0, |nearest| nearest.distance);
+        20.0 - drop + height
+    };
+    let rows = (12.0 / step).ceil() as usize;
+    let mut tips = Vec::new();
+    for row in 0..=rows {
+        for k in 0..=20 {
+            let along = -10.0 + f64::from(if row % 2 == 0 { k } else { 20 - k });
+            let y = -6.0 + step * row as f64;
+            tips.push([along, y, top(along, y)]);
+        }
+    }
+    let poses = tips.iter().map(|tip| Pose::new(*tip, [0.0, 0.0, 1.0]).expect("a pose"));
+    let path = Path::new(poses.collect()).expect("a path");
+    let [low, high] = [[-9.0, -5.0, -7.5], [9.0, 5.0, 3.0]];
+    let stock = Stock::Block { min: low, max: high };
+    let solids = cover(&tool, 1e-4);
+    let cutter = Cutter {
+        solids: &solids,
+        path: &path,
+        others: None,
+    };
+    let limits = Limits {
+        depth: 0.3,
+        width: 0.03,
+        pairs: 60_000,
+    };
+    let found = highest(&solid, &stock, &[cutter], &limits, &());
+    let found = found.expect("a stock").expect("not cancelled");
+    let outline = tool.meridians();
+    let removed = |p: &Vector3<f64>| {
+        tips.windows(2).any(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(Vector3::from);
+            let reach = Vector3::new(3.1, 3.1, 13.0);
+            let (low, high) = (a.inf(&b) - reach, a.sup(&b) + reach);
+            if (0..3).any(|k| p[k] < low[k] || p[k] > high[k]) {
+                return false;
+            }
+            (0..=40).any(|k| {
+                let off = p - (a + (b - a) * (f64::from(k) / 40.0));
+                off.xy().norm() <= radius_at(&outline, off.z)
+            })
+        })
+    };
+    let in_stock = |p: &Vector3<f64>| (0..3).all(|k| p[k] > low[k] && p[k] < high[k]);
+    if let Some((place, height)) = found.highest {
+        let place = Vector3::from(place);
+        prop_assert!(in_stock(&place) && !removed(&place), "{place:?} is not left");
+        let own = distance.nearest(place.into()).expect("a surface").distance;
+        prop_assert!(own >= height && height <= found.bound);
+    }
+    let mut highest = 0.0_f64;
+    for corners in &soup.triangles {
+        let [a, b, c] = corners.map(Vector3::from);
+        let normal = (b - a).cross(&(c - a)).normalize();
+        let middle = (a + b + c) / 3.0;
+        for k in 1..=30 {
+            // Points that certainly are left, by dense times, hang together with those before.
+            let p = middle + normal * (0.02 * f64::from(k));
+            if !in_stock(&p) || removed(&p) {
+                break;
+            }
+            highest = highest.max(distance.nearest(p.into()).expect("a surface").distance);
+        }
+    }
+    // Between the sampled times, a little more is removed.
+    let slack = 0.03;
+    prop_assert!(highest <= found.bound + slack, "{highest} is above {}", found.bound);
+    Ok([highest > 0.3, found.bound.is_finite()])
+}
+
+fn rasters(cases: u32) {
+    let counts = Cell::new([0; 2]);
+    let mut runner = TestRunner::new(Config {
+        failure_persistence: None,
+        ..Config::with_cases(cases)
+    });
+    let scenes = (0..4_u8, 0..6_u8, 0.2..1.0, (0.4..1.5, -0.3..0.3));
+    let done = runner.run(&scenes, |(target, tool, size, raster)| {
+        let (found, [left, bounded]) = (check_raster((target, tool), size, raster)?, counts.get());
+        counts.set([left + u32::from(found[0]), bounded + u32::from(found[1])]);
+        Ok(())
+    });
+    done.expect("all scenes hold");
+    let [left, bounded] = counts.get();
+    println!("of {cases}, material is left in {left}, {bounded} are bounded");
+    assert!(left > cases / 10 && bounded > cases / 4);
+}
+
+#[test]
+fn what_random_rasters_leave_is_enclosed() {
+    rasters(16);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn what_four_hundred_random_rasters_leave_is_enclosed() {
+    rasters(400);
+}
