@@ -1,8 +1,8 @@
 //! Cubes of space, with what of the surface is near them.
 //!
-//! A cell is a cube `H` around a centre, of half the size `h`. Its surroundings `H′` are the cube around the same centre
-//! of half the size `2h · AROUND`. A cell knows all of the surface in `H′`: the triangles, clipped to the somewhat larger
-//! cube of half the size `2h · CLIP`.
+//! A cell is a cube `H` around a centre, of half the size `h`. Its surroundings `H′` are the cube around the
+//! same centre of half the size `2h · AROUND`. A cell knows all of the surface in `H′`: the triangles, clipped
+//! to the somewhat larger cube of half the size `2h · CLIP`.
 //!
 //! Clipping rounds. For each polygon that is kept there is one in the plane of its triangle whose corners are not
 //! farther than `error` from those kept, and which holds all of the triangle within the cube, shrunk by `error`: a
@@ -58,9 +58,9 @@ pub(crate) enum NoCell {
 pub(crate) struct Budget(AtomicUsize);
 
 impl Budget {
-    /// Of some hundred bytes each; every eight corners count as another.
+    /// Of some hundred bytes each; every sixteen corners count as another.
     pub fn new() -> Self {
-        Self(AtomicUsize::new(6_000_000))
+        Self(AtomicUsize::new(4_000_000))
     }
 
     fn take(&self, count: usize) -> bool {
@@ -151,7 +151,7 @@ impl Cell {
         if self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
             return Err(NoCell::TooSmall);
         }
-        if child.get().is_none() && !budget.take(1 + corners / 32) {
+        if child.get().is_none() && !budget.take(1 + corners / 16) {
             return Err(NoCell::TooMany);
         }
         Ok(child.get_or_init(|| {
@@ -222,8 +222,8 @@ impl Cell {
 
     /// No point of the cell is deeper: depths change no faster than places.
     ///
-    /// From a middle inside, a place just beyond the nearest of the surface is tried: if it is outside, the middle is no
-    /// deeper than it is far. From one outside, all nearer than the surface are outside.
+    /// From a middle inside, a place just beyond the nearest of the surface is tried: if it is outside, the
+    /// middle is no deeper than it is far. From one outside, all nearer than the surface are outside.
     pub fn depth_by_middle(&self, surface: &Surface) -> f64 {
         *self.middle.get_or_init(|| {
             let diagonal = 3_f64.sqrt() * self.half * MORE;

@@ -1,10 +1,11 @@
-//! The file: JSON, with the trees in base64, and the digest of all that comes before it at its end.
+//! The file: JSON, with the trees deflated and in base64, and the digest of all that comes before it at its end.
 
 use crate::scene::hexadecimal;
 use crate::solid::Solid;
-use crate::walk::{Reader, Tree};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use miniz_oxide::deflate::compress_to_vec;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -16,6 +17,8 @@ const FORMAT: &str = "sweepsim certificate";
 const VERSION: u32 = 1;
 /// The last field of the file.
 const DIGEST: &str = ",\"digest\":\"";
+/// Trees of more bytes are not taken.
+const MOST_BYTES: usize = 1 << 31;
 /// Digits of a digest.
 const DIGITS: usize = 64;
 
@@ -64,7 +67,7 @@ pub struct Claim {
     pub root: ([f64; 3], f64),
     /// Convex solids that cover each tool.
     pub tools: BTreeMap<u32, Vec<Solid>>,
-    /// The [trees](trees), in base64.
+    /// The [trees](trees), deflated, in base64.
     pub trees: String,
 }
 
@@ -189,8 +192,8 @@ pub struct TreePart<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Trees in base64, each after five numbers: path, first move, moves, solid, and bytes. Those of a path and a solid are
-/// in the order of moves.
+/// Trees, deflated and in base64: each after five numbers: path, first move, moves, solid, and bytes. Those of
+/// a path and a solid are in the order of moves.
 #[must_use]
 pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
     let mut all = Vec::new();
@@ -208,28 +211,40 @@ pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
         }
         all.extend_from_slice(part.bytes);
     }
-    STANDARD.encode(all)
+    STANDARD.encode(compress_to_vec(&all, 6))
 }
 
 impl Claim {
     pub(crate) fn bytes(&self) -> Option<Vec<u8>> {
-        STANDARD.decode(&self.trees).ok()
+        let packed = STANDARD.decode(&self.trees).ok()?;
+        decompress_to_vec_with_limit(&packed, MOST_BYTES).ok()
     }
 }
 
-pub(crate) fn parts(bytes: &[u8]) -> Option<Vec<Tree<'_>>> {
-    let (mut reader, mut all) = (Reader(bytes), Vec::new());
-    while !reader.0.is_empty() {
-        let mut number = || reader.number();
-        let [path, first, count, solid, length] = [number()?, number()?, number()?, number()?, number()?];
-        let bytes = reader.bytes(length)?;
-        all.push(Tree {
-            path,
-            first,
-            count,
-            solid,
-            bytes,
-        });
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_versions_and_other_files_are_refused() {
+        let empty = || serde_json::Value::Null;
+        let certificate = Certificate::new("a test".into(), empty(), Vec::new(), String::new(), Vec::new());
+        let text = certificate.written().expect("a notation");
+        assert_eq!(Certificate::read(text.as_bytes()).expect("a certificate"), certificate);
+        let later = Certificate {
+            version: 2,
+            ..certificate.clone()
+        };
+        let text = later.written().expect("a notation");
+        assert!(matches!(
+            Certificate::read(text.as_bytes()),
+            Err(NoCertificate::Version(2))
+        ));
+        let other = Certificate {
+            format: "a shopping list".into(),
+            ..certificate
+        };
+        let text = other.written().expect("a notation");
+        assert!(matches!(Certificate::read(text.as_bytes()), Err(NoCertificate::End)));
     }
-    Some(all)
 }

@@ -6,14 +6,15 @@
 //!
 //! - **Missed, separated**: a direction `n` with `max_H ⟨n, ·⟩ + r(−n) < 0`: no point of `B` is in `H`.
 //! - **Outside**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
-//! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and `√3 h`.
-//! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`, and `w` has
-//!   `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What is above all planes in
-//!   `H′` is convex and without surface: one place of it is outside of `T`, so all of it is. If `|w| ≤ h`, then `x + w`
-//!   is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a multiple of it. *Cell lifted* is the same
-//!   with all of `H` instead of `B`.
-//! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`, as far as
-//!   that is at most `h`; the smaller of both is at most their mean.
+//! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and
+//!   `√3 h`.
+//! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`,
+//!   and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What
+//!   is above all planes in `H′` is convex and without surface: one place of it is outside of `T`, so all of it
+//!   is. If `|w| ≤ h`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
+//!   multiple of it. *Cell lifted* is the same with all of `H` instead of `B`.
+//! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`,
+//!   as far as that is at most `h`; the smaller of both is at most their mean.
 
 use crate::cell::Cell;
 use crate::motion::{Node, Placement, Run};
@@ -150,7 +151,8 @@ fn length_for(height: f64, n: &V3) -> f64 {
     }
 }
 
-/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet some of them exactly, and for these, all others too.
+/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet some of them exactly, and for these, all
+/// others too.
 fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let mut best: Option<V3> = None;

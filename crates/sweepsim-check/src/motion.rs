@@ -1,9 +1,9 @@
 //! Where a solid of revolution is, and how much its way bends.
 //!
-//! With the tip `b`, the unit axis `a` and a point `p` of the solid at a distance of at most `r` from the tip: the solid
-//! is one of revolution, so it may be taken to turn with `ω = a × a′`, and then `|p″| ≤ |b″| + (|a″| + |a′|²) r`. A
-//! function with `|f″| ≤ m` is nowhere more than `m h²/8` above its chord over a time `h`. So what `⟨n, p⟩` is at the
-//! ends of a time, and this, bounds it in between.
+//! With the tip `b`, the unit axis `a` and a point `p` of the solid at a distance of at most `r` from the tip:
+//! the solid is one of revolution, so it may be taken to turn with `ω = a × a′`, and then `|p″| ≤ |b″| + (|a″|
+//! + |a′|²) r`. A function with `|f″| ≤ m` is nowhere more than `m h²/8` above its chord over a time `h`. So
+//! what `⟨n, p⟩` is at the ends of a time, and this, bounds it in between.
 
 use crate::scene::{Move, Path, Piece};
 use crate::solid::Body;
@@ -76,8 +76,8 @@ impl Curve {
     }
 }
 
-/// Bounds of `|q′|` and `|q″|` for `q = P/w − c`, with `q′ = (P′ − q w′)/w` and `q″ = (P″ − 2 q′ w′ − q w″)/w`: each
-/// numerator is a Bernstein form, and so in the hull of its coefficients. `c` is the middle control point.
+/// Bounds of `|q′|` and `|q″|` for `q = P/w − c`, with `q′ = (P′ − q w′)/w` and `q″ = (P″ − 2 q′ w′ − q w″)/w`:
+/// each numerator is a Bernstein form, and so in the hull of its coefficients. `c` is the middle control point.
 fn rates(points: &[V3], weights: &[f64], least: f64) -> (f64, f64) {
     let degree = points.len() - 1;
     let middle = scaled(&points[degree / 2], 1.0 / weights[degree / 2]);
@@ -196,9 +196,9 @@ fn unit_error(points: &[V3], weights: &[f64]) -> f64 {
     (0..=2 * n).map(coefficient).fold(0.0, f64::max) / (least * least)
 }
 
-/// The piece, or pieces, of a linear move: both poses, and the rational arc between the axes,
-/// `(a (1 − t)² + 2 s t (1 − t) + b t²)/(…)` with `s = (a + b)/|a + b|` and the middle weight `|a + b|/2`. For axes more
-/// than 90° apart, by way of the middle.
+/// The piece, or pieces, of a linear move: both poses, and the rational arc between the axes, `(a (1 − t)² + 2
+/// s t (1 − t) + b t²)/(…)` with `s = (a + b)/|a + b|` and the middle weight `|a + b|/2`. For axes more than
+/// 90° apart, by way of the middle.
 fn linear(from: &[V3; 2], to: &[V3; 2], pieces: &mut Vec<Piece>) -> Option<()> {
     let (a, b) = (from[1], to[1]);
     let (tips, tip_weights) = (vec![from[0], to[0]], vec![1.0; 2]);
@@ -287,7 +287,10 @@ pub(crate) struct Node {
 impl Node {
     /// Whether the box misses a cube.
     pub fn misses(&self, centre: &V3, half: f64) -> bool {
-        (0..3).any(|k| self.low[k] > centre[k] + half || self.high[k] < centre[k] - half)
+        (0..3).any(|k| {
+            let room = 8.0 * EPS * (centre[k].abs() + half + self.low[k].abs().max(self.high[k].abs()));
+            self.low[k] - (centre[k] + half) > room || (centre[k] - half) - self.high[k] > room
+        })
     }
 }
 

@@ -63,7 +63,8 @@ pub struct Path {
 /// How a tool gets from one pose to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Move {
-    /// The tip goes straight, while the axis turns the shortest way, as one rational arc, or as two if by more than 90°.
+    /// The tip goes straight, while the axis turns the shortest way, as one rational arc, or as two if by more
+    /// than 90°.
     Linear,
     /// Along rational curves, within the [deviation](Scene::deviation) of what the program says.
     Pieces(Vec<Piece>),

@@ -89,8 +89,9 @@ impl Body {
 
     /// How far it reaches along `n`, from the tip: not less than the largest `⟨n, x⟩`. `error`: of the axis.
     ///
-    /// With the parts `α` along and `β ≥ 0` across the axis, that is the largest `β ρ + α ζ`. It changes no faster than
-    /// `reach` times the direction; `α` and `β` are off by twice the error of the axis, and by roundings.
+    /// With the parts `α` along and `β ≥ 0` across the axis, that is the largest `β ρ + α ζ`. It changes no
+    /// faster than `reach` times the direction; `α` and `β` are off by twice the error of the axis, and by
+    /// roundings.
     pub fn support_up(&self, n: &V3, axis: &V3, error: f64) -> f64 {
         let along = dot(n, axis);
         let across = sub(n, &scaled(axis, along));
@@ -208,7 +209,8 @@ pub(crate) fn covering(outline: &Outline, solids: &[Solid]) -> Result<Vec<Body>,
     };
     let points: Vec<_> = outline.points.iter().map(|p| (*p, 1.0)).collect();
     if outline.curves.is_empty() {
-        let is_held = !points.is_empty() && cover.holds(&Part::Points(points), 0);
+        // They are not those of a curve: not to be halved.
+        let is_held = !points.is_empty() && cover.holds(&Part::Points(points), HALVINGS);
         is_held.then_some(()).ok_or("a tool is not in its solid")?;
     }
     let mut before: P2 = [0.0; 2];
@@ -296,9 +298,9 @@ impl Cover<'_> {
     fn has_arc(&mut self, centre: P2, radius: f64, [from, to]: [f64; 2]) -> bool {
         let direction = |angle: f64| [angle.cos(), angle.sin()];
         let (mut at, end) = (direction(from), direction(to));
-        let mut slack = 0.0_f64;
+        let (mut slack, mut turned) = (0.0_f64, 0.0);
         for step in 0..8 {
-            if step > 0 && apart(at, end) * radius <= self.near {
+            if step > 0 && apart(at, end) * radius <= self.near && (turned - (to - from)).abs() < 1e-6 {
                 self.slack = self.slack.max(slack + apart(at, end) * radius);
                 return true;
             }
@@ -312,6 +314,7 @@ impl Cover<'_> {
                 })
             });
             let Some((off, next)) = next else { return false };
+            turned += cross2(at, next).atan2(dot2(at, next));
             (slack, at) = (slack.max(off), next);
         }
         false
@@ -341,6 +344,17 @@ fn off_with_axis(body: &Body, points: &[P2]) -> f64 {
 
 /// How far a point is from a tool, at most: 0 if it is inside. Not known of curves other than lines and arcs.
 pub(crate) fn off_tool(outline: &Outline, [rho, zeta]: P2) -> f64 {
+    let (nearest, is_inside) = beside(outline, [rho, zeta]);
+    // Where curves meet at this height, they might be counted wrong: not a little above and below as well.
+    let near = 1e-9 * (rho.abs() + zeta.abs());
+    let all = [zeta - near, zeta + near]
+        .iter()
+        .all(|zeta| beside(outline, [rho, *zeta]).1);
+    if is_inside && all { 0.0 } else { nearest }
+}
+
+/// How far the outline is from a point, and whether it is an odd number of times beyond it at the same height.
+fn beside(outline: &Outline, [rho, zeta]: P2) -> (f64, bool) {
     let (mut nearest, mut beyond) = (f64::INFINITY, 0);
     for curve in &outline.curves {
         match curve {
@@ -376,8 +390,8 @@ pub(crate) fn off_tool(outline: &Outline, [rho, zeta]: P2) -> f64 {
                     }
                 }
             }
-            Curve::Bezier(_) => return f64::INFINITY,
+            Curve::Bezier(_) => return (f64::INFINITY, false),
         }
     }
-    if beyond % 2 == 1 { 0.0 } else { nearest }
+    (nearest, beyond % 2 == 1)
 }

@@ -196,8 +196,9 @@ fn open_edge(triangles: &[Triangle]) -> Option<V3> {
 
 /// How a ray passes a triangle: 1 out of it, −1 into it, 0 not at all. `None` if that is too near to tell.
 ///
-/// With the corners `a, b, c` seen from the point, the ray's line is on one side of the edge `ab` if `⟨way, a × b⟩` is
-/// positive, and passes the triangle if all three are of one sign; it does so ahead if `⟨a, b × c⟩` has that sign, too.
+/// With the corners `a, b, c` seen from the point, the ray's line is on one side of the edge `ab` if `⟨way, a ×
+/// b⟩` is positive, and passes the triangle if all three are of one sign; it does so ahead if `⟨a, b × c⟩` has
+/// that sign, too.
 fn crossing(corners: &Triangle, point: &V3, way: &V3) -> Option<i64> {
     let [a, b, c] = corners.map(|corner| sub(&corner, point));
     let largest = size(&a).max(size(&b)).max(size(&c));
@@ -264,7 +265,7 @@ mod tests {
         assert_eq!(surface.is_outside(&[0.5, 0.5, 0.5]), Some(true));
         assert_eq!(surface.is_outside(&[-0.1, 0.1, 0.1]), Some(true));
         let (distance, near) = surface.nearest(&[0.1, 0.2, 0.3]);
-        assert!(distance <= 0.1 && distance > 0.1 - 1e-15 && near == [0.0, 0.2, 0.3]);
+        assert!(distance <= 0.1 && distance > 0.1 - 1e-14 && near == [0.0, 0.2, 0.3]);
         assert!(Surface::new(&triangles[1..]).is_err());
         // Inside out: nothing is inside.
         let surface = Surface::new(&triangles.map(|[a, b, c]| [a, c, b])).expect("closed");

@@ -1,61 +1,38 @@
 //! Follows the trees of a certificate, and looks at each leaf.
 //!
-//! A tree is about some moves of a path and one of the convex solids that cover its tool. Its root is all of these moves
-//! and the cube around the target. A division of time is into both halves, of the list of pieces or of one; one of the
-//! cell is into its eight parts, without those that the box of what is swept misses. So the leaves cover all times, and
-//! all of the cube, and nothing of the target is outside of it.
+//! A tree is about some moves of a path and one of the convex solids that cover its tool. Its root is all of
+//! these moves and the cube around the target. A division of time is into both halves, of the list of pieces or
+//! of one; one of the cell is into its eight parts, without those that the box of what is swept misses. So the
+//! leaves cover all times, and all of the cube, and nothing of the target is outside of it.
 
-use crate::Failed;
 use crate::cell::{Budget, Cell, NoCell};
 use crate::leaf::{During, Near, lever};
 use crate::motion::Run;
 use crate::surface::Surface;
+use crate::tree::{Reader, Tree};
 use crate::vector::{V3, cross, sub, unit};
-
-/// A tree, and what it is about.
-pub(crate) struct Tree<'a> {
-    pub path: usize,
-    pub first: usize,
-    pub count: usize,
-    pub solid: usize,
-    pub bytes: &'a [u8],
-}
-
-/// Reads bytes.
-pub(crate) struct Reader<'a>(pub &'a [u8]);
-
-impl<'a> Reader<'a> {
-    pub fn byte(&mut self) -> Option<u8> {
-        let (first, rest) = self.0.split_first()?;
-        self.0 = rest;
-        Some(*first)
-    }
-
-    /// Groups of seven bits, the lowest first.
-    pub fn number(&mut self) -> Option<usize> {
-        let mut number = 0_usize;
-        for shift in (0..35).step_by(7) {
-            let byte = self.byte()?;
-            number |= usize::from(byte & 0x7f) << shift;
-            if byte < 0x80 {
-                return Some(number);
-            }
-        }
-        None
-    }
-
-    pub fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (own, rest) = self.0.split_at_checked(count)?;
-        self.0 = rest;
-        Some(own)
-    }
-}
 
 /// Some moves of a path, or a part of one of their pieces.
 #[derive(Clone, Copy)]
 enum When {
     Node(usize),
     Part { stretch: usize, times: [f64; 2] },
+}
+
+/// A leaf of a tree that does not hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Failed {
+    /// The path.
+    pub path: usize,
+    /// The move, from 0.
+    pub number: usize,
+    /// Lower corner of the cell.
+    pub low: [f64; 3],
+    /// Upper corner of the cell.
+    pub high: [f64; 3],
+    /// Why.
+    pub why: &'static str,
 }
 
 /// What a walk has found.
@@ -221,8 +198,9 @@ impl<'a> Walk<'a> {
 
     /// No point is deeper, as far as the leaf says.
     fn bound(&self, cell: &Cell, when: When, kind: u8, normals: &[V3]) -> Option<f64> {
-        if kind == 3 {
-            return cell.is_clear().then_some(f64::NEG_INFINITY);
+        // Whatever is said of it: nothing of the target is in the cell.
+        if cell.is_clear() {
+            return Some(f64::NEG_INFINITY);
         }
         if kind == 4 {
             let depth = cell.depth_by_middle(self.surface);
@@ -250,6 +228,8 @@ impl<'a> Walk<'a> {
         let nothing = |is_empty: bool| is_empty.then_some(f64::NEG_INFINITY);
         match (kind, normals) {
             (2, _) => nothing(near.missed()),
+            // Said to be clear, and not.
+            (3, _) => None,
             (5, [n]) => nothing(near.separated(n)),
             (6, [n]) => near.lifted(n, true),
             (7, [n]) => near.lifted(n, false),

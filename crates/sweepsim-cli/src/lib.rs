@@ -29,6 +29,7 @@ pub fn main() -> ExitCode {
         Command::Convert(options) => commands::convert(&options).map(|()| ExitCode::SUCCESS),
         Command::Compare(options) => commands::compare(&options).map(|()| ExitCode::SUCCESS),
         Command::Merge(options) => commands::merge(&options),
+        Command::Check(options) => commands::check(&options),
     };
     done.unwrap_or_else(|failure| {
         anstream::eprintln!("{failure}");

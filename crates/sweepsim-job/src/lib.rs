@@ -43,6 +43,7 @@
 //! | simulate, verify or sweep a job or a program | [`Request::plan`], [`Plan::run`] |
 //! | one shard of a run, and all of them joined | [`Plan::shard`], [`Merge`] |
 //! | the section of a swept volume by a plane | [`Plan::section`] |
+//! | a certificate checked | [`check`] |
 //! | two parts compared | [`CompareRequest`] |
 //! | a file in another format | [`ConvertRequest`] |
 //! | what is in a file | [`describe`] |
@@ -74,6 +75,7 @@ pub use sweepsim::Monitor;
 pub use sweepsim_dexel as dexel;
 pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Statement, StatementState, Verdict};
 pub use sweepsim_motion as motion;
+pub use verify::{CheckedCertificate, CheckedStatement, check};
 pub use warnings::is_covered;
 
 /// The examples of the README are tested as well.

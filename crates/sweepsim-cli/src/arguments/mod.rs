@@ -61,6 +61,11 @@ pub(crate) enum Command {
     /// Reads the job again, from the folder where the shards were run, if that exists. Exit status 2 if a piece is
     /// missing, comes twice, is damaged or of another run.
     Merge(MergeOptions),
+    /// Checks a certificate that `verify` left: reads its files again, and recomputes every bound of the proof with an
+    /// arithmetic of its own.
+    ///
+    /// Exit status: 0 proven; 1 not proven; 2 not a certificate, or it does not belong to these files.
+    Check(CheckOptions),
 }
 
 #[derive(Debug, Args)]
@@ -143,9 +148,12 @@ pub(crate) struct JudgeOptions {
     /// what they touch beside a dexel is found as well.
     #[arg(long)]
     pub sure: bool,
-    /// Proves nothing between the lines of the dexels.
+    /// Proves nothing between the lines of the dexels, and leaves no certificate.
     #[arg(long)]
     pub no_proof: bool,
+    /// Also writes the certificate of what was proven to this file, for `check`.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["no_proof", "shard"])]
+    pub certificate: Option<PathBuf>,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
     #[arg(long)]
     pub moves: bool,
@@ -192,6 +200,19 @@ pub(crate) struct MergeOptions {
     /// Prints the report as JSON instead of the summary.
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckOptions {
+    /// The certificate. Its files are looked for in the current folder, then around that of the certificate.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub certificate: PathBuf,
+    /// The number of threads [default: one per core]. It does not affect the results.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Prints nothing.
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 #[derive(Debug, Args)]
@@ -298,6 +319,8 @@ pub(crate) enum Output {
     Binary,
     /// part.tridexels: the same along x, y and z, so that later runs go on with sharp walls; not written by default
     Tridexels,
+    /// certificate.json: what `verify` has proven, for `check`
+    Certificate,
 }
 
 /// The directions of the dexels that meshes and pictures are made of.

@@ -133,6 +133,7 @@ impl Output {
             Self::Report => job::Output::Report,
             Self::Binary => job::Output::Binary,
             Self::Tridexels => job::Output::Tridexels,
+            Self::Certificate => job::Output::Certificate,
         }
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, absolute};
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim_formats::{Verdict, io_reason};
-use sweepsim_job::{JobError, Merge, Plan, ShardNumber, Task, output_folder, words};
+use sweepsim_job::{JobError, Merge, Plan, ShardNumber, Sink, Task, output_folder, words};
 
 /// How the process works, whatever it does.
 struct Process {
@@ -40,12 +40,16 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
     let plan = options.request(task, judging).plan()?;
     match options.shard {
         Some(number) => shard(&plan, number, options, &process),
-        None => whole(plan, options.out.as_deref(), &process),
+        None => whole(plan, (options.out.as_deref(), judging.certificate.as_deref()), &process),
     }
 }
 
-/// Carries out a plan, and writes its outputs.
-fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, Failure> {
+/// Carries out a plan, and writes its outputs, and a certificate where one is wanted.
+fn whole(
+    plan: Plan,
+    (out, certificate): (Option<&Path>, Option<&Path>),
+    process: &Process,
+) -> Result<ExitCode, Failure> {
     plan.check_room()?;
     let mut outputs = Outputs::new(output_folder(out, &plan.job().name))?;
     let progress = Progress::new(plan.job().moves(), process.quiet);
@@ -54,6 +58,16 @@ fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, 
         let outcome = plan.run(&progress)?;
         let wanted = outcome.plan().request().wanted();
         let written = outcome.write_to(&mut outputs, wanted, &progress)?;
+        if let Some(file) = certificate {
+            let none = "there is nothing to certify: no target, or a proof that was too long";
+            let none = || JobError::Request {
+                field: "certificate",
+                why: none.to_owned(),
+            };
+            let text = outcome.certificate()?.ok_or_else(none)?;
+            let name = file.to_string_lossy();
+            Outputs::anywhere().write(&name, &mut |file| file.write_all(text.as_bytes()))?;
+        }
         Ok::<_, JobError>((outcome, written))
     });
     progress.finish();
@@ -124,5 +138,5 @@ pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
             there.display()
         )));
     }
-    whole(merge.plan()?, Some(&out), &process)
+    whole(merge.plan()?, (Some(&out), None), &process)
 }

@@ -12,7 +12,7 @@ pub use task::{Directions, Output, Task};
 
 use crate::base::JobError;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sweepsim::Options;
 use sweepsim_dexel::{Stock, TriangleSoup};
 use sweepsim_formats::Job;
@@ -265,6 +265,47 @@ impl Request {
 
     pub(crate) fn wants(&self, output: Output) -> bool {
         self.wanted().contains(&output)
+    }
+
+    /// The files that it names, but for its input.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let mut request = self.clone();
+        let machine = self.program.dialect.machine.as_ref().map(PathBuf::from);
+        request
+            .files_mut()
+            .into_iter()
+            .map(|file| file.clone())
+            .chain(machine)
+            .collect()
+    }
+
+    fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        let program = &mut self.program;
+        let mut files: Vec<&mut PathBuf> = program.tools.iter_mut().chain(&mut program.target).collect();
+        if let Some(StockOption::Mesh(file)) = &mut program.stock {
+            files.push(file);
+        }
+        files
+    }
+
+    /// The same request, where relative names of files refer to a folder.
+    pub(crate) fn within(mut self, folder: &Path) -> Self {
+        for file in self.files_mut() {
+            *file = folder.join(&*file);
+        }
+        if let Input::File(file) = &mut self.input {
+            *file = folder.join(&*file);
+        }
+        // A machine is a file, or the name of a ready one.
+        let machine = &mut self.program.dialect.machine;
+        let file = machine
+            .as_ref()
+            .map(|name| folder.join(name))
+            .filter(|file| file.is_file());
+        if let Some(file) = file {
+            *machine = Some(file.display().to_string());
+        }
+        self
     }
 
     /// The options of the sweep.

@@ -58,11 +58,13 @@ pub enum Output {
     Binary,
     /// `part.tridexels`: the same along x, y and z, so that later runs go on with sharp walls.
     Tridexels,
+    /// `certificate.json`: what [`Task::Verify`] has proven, for [`check`](crate::check).
+    Certificate,
 }
 
 impl Output {
     /// What is written if nothing else is asked for.
-    pub const DEFAULT: [Self; 4] = [Self::Dexels, Self::Mesh, Self::Picture, Self::Report];
+    pub const DEFAULT: [Self; 5] = [Self::Dexels, Self::Mesh, Self::Picture, Self::Report, Self::Certificate];
 }
 
 /// The directions of the dexels that meshes and pictures are made of.

@@ -4,7 +4,7 @@ use crate::base::JobError;
 use crate::request::Task;
 use crate::session::{Session, phase, reported};
 use crate::shards::Gathered;
-use crate::verify::{Verified, setups, verified};
+use crate::verify::{Certified, Verified, setups, verified};
 use crate::warnings;
 use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Statistics, simulate, sweep_all};
@@ -27,6 +27,8 @@ pub(super) struct Computed {
     pub target: Option<Target>,
     /// What each move does, if asked for.
     pub moves: Vec<MoveSummary>,
+    /// What was proven, for a checker.
+    pub certified: Vec<Certified>,
 }
 
 impl Computed {
@@ -41,6 +43,7 @@ impl Computed {
             aside: Vec::new(),
             target: None,
             moves: Vec::new(),
+            certified: Vec::new(),
         }
     }
 }
@@ -57,6 +60,7 @@ impl From<Verified> for Computed {
             aside: Vec::new(),
             target: done.target,
             moves: done.moves,
+            certified: done.certified,
         }
     }
 }

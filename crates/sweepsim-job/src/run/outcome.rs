@@ -8,6 +8,7 @@ use crate::frames;
 use crate::page::{self, PageSource};
 use crate::request::{Output, Task};
 use crate::session::{self, Plan, Session};
+use crate::verify;
 use std::path::Path;
 use sweepsim::{Method, Monitor};
 use sweepsim_dexel::{Dexels, Mesh};
@@ -131,6 +132,15 @@ impl Outcome {
         self.done.unresolved.is_empty() && self.done.uncertified == 0
     }
 
+    /// What was proven, as the text of `certificate.json`, for [`check`](crate::check). `None` if nothing was, or the
+    /// request has no notation.
+    ///
+    /// # Errors
+    /// [`JobError`]: a file of the request cannot be read any more.
+    pub fn certificate(&self) -> Result<Option<String>, JobError> {
+        verify::text(&self.plan, &self.done.certified)
+    }
+
     /// The surface of the part, with sharp edges.
     ///
     /// # Errors
@@ -188,6 +198,13 @@ impl Outcome {
         }
         if request.task == Task::Sweep && request.sweeping.method == Method::Surface && wants(Output::Mesh) {
             envelope::write(session, sink, &mut report)?;
+        }
+        if wants(Output::Certificate) {
+            match self.certificate()? {
+                Some(text) => sink.write("certificate.json", &mut |file| file.write_all(text.as_bytes()))?,
+                // That of an earlier run is none of this one.
+                None => drop(sink.remove("certificate.json")),
+            }
         }
         if wants(Output::Report) {
             let source = PageSource {

@@ -1,5 +1,6 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
+use super::certificate::Certified;
 use super::texts::ProgramTexts;
 use super::{axes, proof, targets, work};
 use crate::base::JobError;
@@ -13,7 +14,7 @@ pub(super) fn describe(
     session: Session,
     done: &Judgement,
     found: Option<&Deviations>,
-) -> Result<(), JobError> {
+) -> Result<Vec<Certified>, JobError> {
     let job = session.job;
     let mut texts = ProgramTexts::new(session);
     let mut findings: Vec<ReportedFinding> = done
@@ -22,13 +23,13 @@ pub(super) fn describe(
         .map(|finding| reported(finding, job, &mut texts))
         .collect();
     findings.extend(axes::findings(job, report, &mut texts));
-    let mut statements = Vec::new();
+    let (mut statements, mut certified) = (Vec::new(), Vec::new());
     if session.request.judging.proof && !done.stopped {
         let regions = found.iter().flat_map(|found| &found.regions);
         let is_left = { regions }.any(|region| region.kind == DeviationKind::Excess);
         let seen = (&findings[..], is_left);
         let new;
-        (statements, new) = phase(report, "proof", || proof::statements(session, &mut texts, seen))?;
+        (statements, new, certified) = phase(report, "proof", || proof::statements(session, &mut texts, seen))?;
         findings.extend(new);
         report.statements = Some(statements.clone());
     }
@@ -97,7 +98,7 @@ pub(super) fn describe(
     };
     report.verdict = Some(proof::verdict(on_lines, &statements));
     report.findings = Some(findings);
-    Ok(())
+    Ok(certified)
 }
 
 fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedFinding {

@@ -1,6 +1,8 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
+mod asked;
 mod axes;
+mod certificate;
 mod directions;
 mod findings;
 mod fixtures;
@@ -11,6 +13,8 @@ pub(crate) mod targets;
 mod texts;
 mod work;
 
+pub(crate) use certificate::{Certified, text};
+pub use certificate::{CheckedCertificate, CheckedStatement, check};
 pub(crate) use work::setups;
 
 use crate::base::{JobError, words};
@@ -37,6 +41,8 @@ pub(crate) struct Verified {
     pub target: Option<Target>,
     /// What each move does, if asked for.
     pub moves: Vec<MoveSummary>,
+    /// What was proven, for a checker.
+    pub certified: Vec<Certified>,
 }
 
 /// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the
@@ -188,7 +194,7 @@ impl Before {
             }
             _ => None,
         };
-        findings::describe(report, session, &done, found.as_ref())?;
+        let certified = findings::describe(report, session, &done, found.as_ref())?;
         report.scope = Some(scope::scope(session, sets));
         let along_z = looks.into_iter().next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;
@@ -200,6 +206,7 @@ impl Before {
             unresolved: along_z.unresolved,
             uncertified,
             target,
+            certified,
         })
     }
 }

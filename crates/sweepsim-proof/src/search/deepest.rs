@@ -2,13 +2,13 @@
 
 use super::bound::{Above, Depth};
 use super::found::{Found, MOST_OPEN};
+use super::pair::{Pair, When};
 use super::reach::During;
 use super::trace::{Reason, Trace};
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::{OpenBox, Witness};
 use nalgebra::Vector3;
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// What is wanted of a search.
@@ -36,46 +36,6 @@ pub(super) const SHARE: f64 = 1.0 / 64.0;
 const MOST_TURNING: usize = 4;
 /// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
 const FINE: f64 = 16.0;
-
-/// When: some stretches, or a part of one.
-#[derive(Clone, Copy)]
-enum When {
-    Node(usize),
-    Part { stretch: usize, times: [f64; 2] },
-}
-
-/// A cell and a time that are to be looked at.
-struct Pair<'a> {
-    /// No point is deeper.
-    depth: f64,
-    /// The order in which pairs are found, so that there is one order.
-    order: usize,
-    cell: &'a Cell,
-    when: When,
-    /// In the trace.
-    node: u32,
-}
-
-impl PartialEq for Pair<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Pair<'_> {}
-
-impl PartialOrd for Pair<'_> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// The deepest first; of those, the latest, so that few are kept.
-impl Ord for Pair<'_> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.depth.total_cmp(&other.depth).then(self.order.cmp(&other.order))
-    }
-}
 
 /// The search for how deep a solid goes on a run of stretches.
 pub(super) struct Search<'a> {

@@ -5,6 +5,7 @@ mod closest;
 mod deepest;
 mod found;
 mod gouge;
+mod pair;
 mod reach;
 mod trace;
 

@@ -15,8 +15,9 @@
 //! | 7, 8, 9 | The solid, lifted above one, two or three planes: their normals. |
 //! | 10 | Between two planes: their normals. |
 //!
-//! A normal is a number `k`: 0, and three `f32`; or 1, and the number of a triangle; or that which was written `k − 1`
-//! normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its highest bit set.
+//! A normal is a number `k`: 0, and three `f32`; or 1, and the number of a triangle; or that which was written
+//! `k − 1` normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its
+//! highest bit set.
 
 use crate::solid::Written;
 use std::collections::HashMap;

@@ -4,21 +4,12 @@
 //! triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
 
 use super::polygon::{area, clip};
+use super::way::{Normal, Triangle, Way};
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::DistanceTo;
-
-/// A triangle of the surface.
-#[derive(Clone, Debug)]
-pub(crate) struct Triangle {
-    /// Its number among all that were given.
-    pub number: u32,
-    pub corners: [Vector3<f64>; 3],
-    /// Unit normal, out of the solid.
-    pub normal: Vector3<f64>,
-}
 
 /// Part of a triangle: a convex polygon.
 #[derive(Clone, Debug)]
@@ -38,51 +29,6 @@ pub(crate) enum Near {
     Inside,
     /// None of them is.
     Outside,
-}
-
-/// How a normal is written down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Written {
-    /// That of a triangle.
-    OfTriangle(u32),
-    /// Three numbers of any length.
-    Given([f32; 3]),
-}
-
-/// A unit normal that can be written down exactly.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Normal {
-    pub vector: Vector3<f64>,
-    pub written: Written,
-}
-
-impl Normal {
-    /// The nearest to a direction that has three short numbers. `None` if it has no length.
-    pub fn near(direction: &Vector3<f64>) -> Option<Self> {
-        let short = direction.try_normalize(1e-12)?.map(|c| c as f32);
-        Some(Self {
-            vector: short.map(f64::from).try_normalize(0.5)?,
-            written: Written::Given(short.into()),
-        })
-    }
-
-    fn of(triangle: &Triangle) -> Self {
-        Self {
-            vector: triangle.normal,
-            written: Written::OfTriangle(triangle.number),
-        }
-    }
-}
-
-/// A direction in which a cutter may be lifted off what is near a cell.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
-    pub normal: Vector3<f64>,
-    pub written: Written,
-    /// The highest value along it of the surface in the surroundings.
-    pub top: f64,
-    /// Whether beyond that the surroundings are outside of the solid.
-    pub out: bool,
 }
 
 /// What is found out of a cell with some of the surface near it, when it is first looked at.
@@ -415,4 +361,32 @@ pub(crate) fn is_outside(point: &Vector3<f64>, pieces: &[Piece], triangles: &[Tr
         }
         first.map(|(_, slope)| slope < 0.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::Target;
+    use sweepsim_dexel::TriangleSoup;
+
+    /// A face passes below the cell and hardly looks up: what is above it, within the surroundings, is inside.
+    #[test]
+    fn above_a_face_is_not_outside_if_no_line_leads_there() {
+        let face = Vector3::new(0.72, 0.0, -0.694).normalize();
+        let turned = |[x, y, z]: [f64; 3]| [x * face.x - z * face.z, y, x * face.z + z * face.x];
+        let mut soup = TriangleSoup::block([-20.0; 3], [1.2, 20.0, 20.0]);
+        soup.triangles
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|corner| *corner = turned(*corner));
+        let target = Target::new(&soup).expect("closed");
+        let all = Near::Many((0..12).collect());
+        let cell = Cell::new(Vector3::zeros(), 0.5, &all, &target.triangles, &target.distance);
+        let out = |direction: Vector3<f64>| {
+            let normal = Normal::near(&direction).expect("a direction");
+            cell.way(normal, &target.triangles).out
+        };
+        assert!(face.dot(&Vector3::new(1.0, 0.0, 1.0)) > 0.02 && out(face));
+        assert!(!out(Vector3::new(1.0, 0.0, 1.0)));
+    }
 }

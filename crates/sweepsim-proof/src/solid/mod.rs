@@ -3,8 +3,10 @@
 mod cell;
 mod faults;
 mod polygon;
+mod way;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, Normal, Triangle, Way, Written, is_outside};
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, is_outside};
+pub(crate) use way::{Normal, Triangle, Way, Written};
 
 pub use faults::Fault;
 

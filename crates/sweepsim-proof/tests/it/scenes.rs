@@ -46,7 +46,7 @@ fn sphere(centre: [f64; 3], radius: f64, rings: usize) -> TriangleSoup {
 }
 
 /// A block with a height field on it: waves with ridges and hollows.
-fn waves(height: f64, cells: usize) -> TriangleSoup {
+pub(crate) fn waves(height: f64, cells: usize) -> TriangleSoup {
     let at = |i: usize, j: usize| {
         let [x, y] = [i, j].map(|k| -10.0 + 20.0 * k as f64 / cells as f64);
         [x, y, height * (0.7 * x).sin() * (0.5 * y).cos()]
@@ -257,6 +257,12 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
     let checked = certified.checked();
     prop_assert!(checked.is_proven(), "{:?}", checked);
     prop_assert!(sampled <= checked.bound.max(1e-9) && checked.bound <= found.bound + 1e-6);
+    if sampled > 1e-6 {
+        // Less than what there is is not proven.
+        let mut claim = certified.claim.clone();
+        claim.enclosure = [0.0, sampled - 1e-7];
+        prop_assert!(!sweepsim_check::check(&certified.scene, &claim, 1).is_proven());
+    }
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
     let wide = found.bound - known > limits.width.max(known / 64.0) + 1e-9;
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.

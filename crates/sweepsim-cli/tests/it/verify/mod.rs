@@ -1,5 +1,6 @@
 //! `verify`: verdicts, findings with their lines, exit status.
 
+mod certificates;
 mod directions;
 mod nearness;
 mod planted;

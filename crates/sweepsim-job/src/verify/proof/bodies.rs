@@ -163,7 +163,7 @@ fn kept_away(
         }
         _ => {}
     }
-    Ok(Proven { statement, findings })
+    Ok(Proven::of(statement, findings))
 }
 
 /// Nothing goes into the solids.
@@ -217,7 +217,7 @@ fn kept_out(
             own.body = body(job, own.tool);
         }
     }
-    Ok(Proven { statement, findings })
+    Ok(Proven::of(statement, findings))
 }
 
 /// The kind of the bodies of a tool, if there is only one.

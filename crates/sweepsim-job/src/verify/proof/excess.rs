@@ -78,5 +78,5 @@ pub(super) fn excess(session: Session, solid: &Result<Target, String>, is_seen: 
         }
         _ => {}
     }
-    Ok(Proven { statement, findings })
+    Ok(Proven::of(statement, findings))
 }

@@ -4,24 +4,17 @@ mod bodies;
 mod excess;
 mod solids;
 
-use super::targets;
+use super::asked::{Asked, CHORDS, WIDTH, along, cutters, floor, limits, pairs};
+use super::certificate::Certified;
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::session::Session;
-use std::collections::BTreeMap;
 use sweepsim_formats::{
-    Job, JobPath, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
+    Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
 };
-use sweepsim_proof::{Convex, Cutter, Enclosed, Limits, OpenBox, Target, Witness, cover, deepest};
+use sweepsim_proof::{Enclosed, OpenBox, Target, Witness, deepest_recorded};
 
-/// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
-const WIDTH: f64 = 0.1;
-/// Concave outlines are replaced by chords within this part of the limit.
-const CHORDS: f64 = 0.01;
-/// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
-const PAIRS: usize = 500_000;
-const PAIRS_OF_MOVE: usize = 400;
 /// As many open places are listed.
 const LISTED: usize = 100;
 
@@ -29,15 +22,21 @@ const LISTED: usize = 100;
 struct Proven {
     statement: Statement,
     findings: Vec<ReportedFinding>,
+    /// For whoever wants to check it.
+    certified: Option<Certified>,
 }
 
-/// What is proven, and what was seen to break it but not on the lines. `seen`: what was found on these, and whether
-/// material was left.
+/// Statements, the findings that break them, and what can be checked of them.
+type All = (Vec<Statement>, Vec<ReportedFinding>, Vec<Certified>);
+
+/// What is proven, what was seen to break it but not on the lines, and what can be checked.
+///
+/// `seen`: what was found on these, and whether material was left.
 pub(super) fn statements(
     session: Session,
     texts: &mut ProgramTexts,
     (seen, is_left): (&[ReportedFinding], bool),
-) -> Result<(Vec<Statement>, Vec<ReportedFinding>), JobError> {
+) -> Result<All, JobError> {
     session.phase("proof");
     let job = session.job;
     let mut all = Vec::new();
@@ -50,10 +49,11 @@ pub(super) fn statements(
         all.extend(bodies::beside_target(session, texts, &solid)?);
     }
     all.extend(bodies::beside_fixtures(session, texts)?);
-    let (mut statements, mut findings) = (Vec::new(), Vec::new());
+    let (mut statements, mut findings, mut all_certified) = (Vec::new(), Vec::new(), Vec::new());
     for Proven {
         statement,
         findings: own,
+        certified,
     } in all
     {
         // What the lines have seen is known better from them.
@@ -65,28 +65,9 @@ pub(super) fn statements(
         };
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
+        all_certified.extend(certified);
     }
-    Ok((statements, findings))
-}
-
-/// What cutters cut with, as solids.
-fn cutters(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
-    let tools = job.tools.iter();
-    tools.map(|(number, tool)| (*number, cover(tool, tolerance))).collect()
-}
-
-/// Solids along the paths of a job.
-fn along<'a>(job: &'a Job, solids: &'a BTreeMap<u32, Vec<Convex>>) -> Vec<Cutter<'a>> {
-    let cutter = |path: &'a JobPath| Cutter {
-        solids: solids.get(&path.tool).map_or(&[][..], Vec::as_slice),
-        path: &path.path,
-        others: Some(&path.other_courses),
-    };
-    job.paths.iter().map(cutter).collect()
-}
-
-fn pairs(job: &Job) -> usize {
-    PAIRS + PAIRS_OF_MOVE * job.moves()
+    Ok((statements, findings, all_certified))
 }
 
 /// What is proven of gouges.
@@ -101,19 +82,20 @@ fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, Str
             return Ok(Proven::open(statement));
         }
     };
-    let cutters = cutters(job, CHORDS * least);
-    let wanted = Limits {
-        depth: least,
-        width: WIDTH * least,
-        pairs: pairs(job),
-    };
-    let found = deepest(solid, &along(job, &cutters), &wanted, session.monitor).ok_or(JobError::Cancelled)?;
+    let asked = Asked::new(job);
+    let own: Vec<_> = asked.cutters(job).into_iter().map(|(_, cutter)| cutter).collect();
+    let found = deepest_recorded(solid, &own, &asked.limits, session.monitor).ok_or(JobError::Cancelled)?;
+    let certified = Certified::new(job, solid, &asked, &found);
     let findings = deep(job, texts, &mut statement, &found, most);
     let between = statement.state == StatementState::Open && statement.enclosure[0] > least;
     if between {
         statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
     }
-    Ok(Proven { statement, findings })
+    Ok(Proven {
+        statement,
+        findings,
+        certified,
+    })
 }
 
 /// What is known of depths, in a statement about them; and the moves that go beyond `most`, if it is refuted by that.
@@ -148,29 +130,17 @@ fn deep(
 
 impl Proven {
     fn open(statement: Statement) -> Self {
+        Self::of(statement, Vec::new())
+    }
+
+    /// Nothing of it can be checked by others.
+    fn of(statement: Statement, findings: Vec<ReportedFinding>) -> Self {
         Self {
             statement,
-            findings: Vec::new(),
+            findings,
+            certified: None,
         }
     }
-}
-
-/// The least and the largest of the limits that are allowed somewhere, of gouges or of excess.
-fn limits(job: &Job, of: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
-    let own = job.limits.as_ref();
-    let general = own.map_or([targets::LIMIT; 2], |limits| [limits.gouge, limits.excess]);
-    let regions = own.into_iter().flat_map(|limits| &limits.regions);
-    let regions = regions.map(|region| [region.gouge, region.excess]);
-    let mut all = std::iter::once(general)
-        .chain(regions)
-        .map(|limits| of(limits).max(floor(job)));
-    let first = all.next().unwrap_or(targets::LIMIT);
-    all.fold([first; 2], |[least, most], limit| [least.min(limit), most.max(limit)])
-}
-
-/// Below the tolerance of the dexels there is nothing to judge.
-fn floor(job: &Job) -> f64 {
-    2.0 * job.tolerance
 }
 
 fn described(job: &Job, texts: &mut ProgramTexts, path: usize, witness: &Witness) -> StatementWitness {
