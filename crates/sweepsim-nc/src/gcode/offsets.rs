@@ -44,6 +44,10 @@ pub(crate) struct Offsets {
     lost: [bool; 3],
     /// Set by G52.
     pub local: [f64; 3],
+    /// Whether positions in machine coordinates are known: the control's variables were given.
+    pub machine_known: bool,
+    /// The homes of G28 and G30 in machine coordinates, as far as they are known.
+    pub homes: [Option<[f64; 3]>; 2],
 }
 
 /// The name of a work offset in a program.
@@ -63,6 +67,32 @@ fn describe(frame: Option<WorkOffset>) -> String {
 }
 
 impl Offsets {
+    /// Those that the control's variables give, in units of so many millimetres.
+    pub(crate) fn new(variables: &BTreeMap<u32, f64>, unit: f64) -> Self {
+        let value = |index: u32| variables.get(&index).map(|value| value * unit);
+        let point = |first: u32| [0, 1, 2].map(|k| value(first + k));
+        let placed = |offset: u32| {
+            let first = 5221 + 20 * offset;
+            let given = point(first);
+            let turn = variables.get(&(first + 9)).copied().unwrap_or(0.0);
+            let origin = given.map(|x| x.unwrap_or(0.0));
+            given
+                .iter()
+                .any(Option::is_some)
+                .then_some((offset, Placed { origin, turn }))
+        };
+        let home = |first: u32| match point(first) {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        };
+        Self {
+            placed: (0..9).filter_map(placed).collect(),
+            machine_known: !variables.is_empty(),
+            homes: [home(5161), home(5181)],
+            ..Self::default()
+        }
+    }
+
     /// From coordinates after scaling and rotation (G51, G68) to the frame of the poses.
     pub(crate) fn map(&self) -> WorkFrame {
         let Placed { origin, turn } = self.placed(self.active).unwrap_or_default();

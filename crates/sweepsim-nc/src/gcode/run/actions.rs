@@ -27,8 +27,8 @@ impl Reader {
         let here_unknown = (0..3).any(|k| words[k].is_some() && self.track.xyz[k].is_none());
         match code {
             // An earlier problem has made the position unknown; see `Reader::go_on`.
-            Code::SetOffsets | Code::ShiftHere if self.uncertain && here_unknown => {}
-            Code::RestoreShift if self.uncertain => {}
+            Code::SetOffsets | Code::ShiftHere if self.seen.uncertain && here_unknown => {}
+            Code::RestoreShift if self.seen.uncertain => {}
             Code::Ignored(note) => self.track.note(note),
             Code::Length(code) => self.set_length(code, block)?,
             Code::EndCurve => self.end_curve()?,
@@ -44,7 +44,7 @@ impl Reader {
             Code::Home { second } => self.home(usize::from(second), block)?,
             Code::SetHome { second } => {
                 if let [Some(x), Some(y), Some(z)] = self.machine_position() {
-                    self.homes[usize::from(second)] = Some([x, y, z]);
+                    self.offsets.homes[usize::from(second)] = Some([x, y, z]);
                 }
             }
             Code::SetOffsets => self.set_offsets(block, words)?,
@@ -53,7 +53,7 @@ impl Reader {
                     return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
                 }
                 self.reframe(|reader| {
-                    if reader.controller == Some(Controller::LinuxCnc) {
+                    if reader.rules.controller == Some(Controller::LinuxCnc) {
                         let shift = reader.offsets.shift;
                         let shift = std::array::from_fn(|k| words[k].unwrap_or(shift[k]));
                         reader.offsets.set_shift(shift);
@@ -297,7 +297,7 @@ impl Reader {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
         let any = block.first("XYZABC").is_some();
         let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.track.xyz[k].is_some());
-        if (any || self.track.trace.is_some()) && known && !self.uncertain {
+        if (any || self.track.trace.is_some()) && known && !self.seen.uncertain {
             self.offsets.use_active()?;
             self.go(MotionMode::Rapid, block)?;
         }
@@ -307,9 +307,11 @@ impl Reader {
                 *angle = 0.0;
             }
         }
-        if let (Some(home), true, [Some(x), Some(y), Some(z)]) =
-            (self.homes[which], self.machine_known, self.control_position())
-        {
+        if let (Some(home), true, [Some(x), Some(y), Some(z)]) = (
+            self.offsets.homes[which],
+            self.offsets.machine_known,
+            self.control_position(),
+        ) {
             let now = [x, y, z];
             return self.go_to_control(std::array::from_fn(|k| if named(k) { home[k] } else { now[k] }), true);
         }

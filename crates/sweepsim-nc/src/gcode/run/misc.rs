@@ -5,7 +5,6 @@ use crate::gcode::codes::{self, Misc, SpindleTurning};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
-use crate::model::read_options::Controller;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader {
@@ -23,7 +22,7 @@ impl Reader {
         }
         if let Some(word) = block.word('T') {
             let tool = Self::tool_number(word.value).map_err(|problem| (problem, word.span()))?;
-            self.selected_tool = Some(tool);
+            self.tools.selected = Some(tool);
             // Programs without a tool change name their tool by a T word alone.
             if self.track.tool.is_none() {
                 self.track.take_tool(Some(tool));
@@ -46,7 +45,7 @@ impl Reader {
                     self.turn_spindle(self.modes.spindle).map_err(at)?;
                 }
                 Misc::Coolant(coolant) => self.track.event(EventKind::Coolant(coolant)).map_err(at)?,
-                Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
+                Misc::ToolChange => self.change_tool(self.tools.selected).map_err(at)?,
                 Misc::SetTool => {
                     let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
                     self.change_tool(tool).map_err(at)?;
@@ -94,7 +93,7 @@ impl Reader {
 
     /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
     pub(crate) fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
-        let fanuc = matches!(self.controller, Some(Controller::Fanuc | Controller::Haas));
+        let fanuc = self.rules.fanuc();
         let seconds = match block.word('P') {
             Some(word) if fanuc && word.whole => word.value / 1000.0,
             Some(word) => word.value,

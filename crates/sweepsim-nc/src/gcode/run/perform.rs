@@ -41,7 +41,7 @@ impl Reader {
             return self.begin_modal_macro(block).map_err(|problem| (problem, block.all()));
         }
         if has(67.0) {
-            self.modal_macro = None;
+            self.calls.modal = None;
         }
         let macro_call = block.has('G') && block.words().iter().any(|w| w.letter == 'G' && w.value == 65.0);
         if !macro_call {
@@ -94,8 +94,8 @@ impl Reader {
         }
         if plan.action.is_none()
             && block.first("XYZABC").is_some()
-            && let Some((arguments, depth)) = self.modal_macro.clone()
-            && depth == self.levels.len()
+            && let Some((arguments, depth)) = self.calls.modal.clone()
+            && depth == self.calls.levels.len()
         {
             step = self.call_macro(&arguments, here).map_err(whole)?;
         }
@@ -138,8 +138,8 @@ impl Reader {
             ))),
             (None, _) => Ok(()),
             // The block with the motion code may be the one with the problem.
-            (Some(_), None) if self.uncertain => {
-                if self.lenient {
+            (Some(_), None) if self.seen.uncertain => {
+                if self.rules.lenient {
                     self.track
                         .note("left out: a move after a problem, until its kind is known again");
                 }
@@ -153,8 +153,8 @@ impl Reader {
                 Err((problem, word.span()))
             }
             (Some(_), Some(motion)) => {
-                if self.strict
-                    && self.controller == Some(Controller::LinuxCnc)
+                if self.rules.strict
+                    && self.rules.controller == Some(Controller::LinuxCnc)
                     && !matches!(motion, MotionMode::Rapid | MotionMode::Thread | MotionMode::RigidTap)
                     && self.modes.feed.is_none_or(|feed| feed <= 0.0)
                 {
@@ -162,8 +162,8 @@ impl Reader {
                         "a feed move without a feed: expected F before it",
                     )));
                 }
-                if self.units.is_none() {
-                    self.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
+                if self.seen.units.is_none() {
+                    self.seen.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
                 }
                 if plan.machine_coordinates {
                     self.go_in_machine_coordinates(motion, block).map_err(whole)
@@ -219,7 +219,7 @@ impl Reader {
                 }
                 Code::StopHere => self.modes.stops_here = true,
                 // Grbl's G61 is its only mode: an exact path.
-                Code::ExactStop(on) => self.modes.exact_stop = on && self.controller != Some(Controller::Grbl),
+                Code::ExactStop(on) => self.modes.exact_stop = on && self.rules.controller != Some(Controller::Grbl),
                 Code::Blending => {
                     self.modes.exact_stop = false;
                     if let Some(tolerance) = block.get('P').filter(|p| *p > 0.0) {
@@ -353,11 +353,7 @@ impl Reader {
                 }
                 letter => self.track.note(format!("{letter} words are not understood: ignored")),
             }
-            if word.whole
-                && matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
-                && "XYZIJKR".contains(word.letter)
-                && word.value != 0.0
-            {
+            if word.whole && self.rules.fanuc() && "XYZIJKR".contains(word.letter) && word.value != 0.0 {
                 self.track.note(
                     "lengths without a decimal point are taken as whole units; without its calculator mode, the control takes them in its smallest increment",
                 );
@@ -368,7 +364,7 @@ impl Reader {
 
     /// LinuxCNC rejects words that no code of their block uses.
     fn check_spare_words(&self, block: &Block) -> Result<(), Located> {
-        if !self.strict || self.controller != Some(Controller::LinuxCnc) || !block.has('R') {
+        if !self.rules.strict || self.rules.controller != Some(Controller::LinuxCnc) || !block.has('R') {
             return Ok(());
         }
         let is = |letter: char, value: f64| block.words().iter().any(|w| w.letter == letter && w.value == value);

@@ -9,7 +9,7 @@ use crate::gcode::offsets::known;
 use crate::gcode::syntax::block::Block;
 use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
-use crate::model::read_options::ToolOffset;
+use crate::model::read_options::{ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
 /// A row of the table, in millimetres.
@@ -19,23 +19,44 @@ pub(crate) struct ToolRow {
     pub diameter: f64,
 }
 
-/// The table.
+/// The length offset in effect.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LengthOffset {
+    pub offset: [f64; 3],
+    /// Whether it is a known one.
+    pub known: bool,
+    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
+    pub used: bool,
+}
+
+/// The table, and what of it is in effect.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ToolTable {
     rows: BTreeMap<u32, ToolRow>,
     /// Diameters of numbers without a row.
     diameters: BTreeMap<u32, f64>,
+    pub length: LengthOffset,
+    /// By a T word, not yet in the spindle.
+    pub selected: Option<u32>,
+    pub changed: bool,
 }
 
 impl ToolTable {
-    pub(crate) fn new(offsets: &BTreeMap<u32, ToolOffset>, diameters: &BTreeMap<u32, f64>) -> Self {
+    pub(crate) fn new(options: &ReadOptions, text: &str) -> Self {
         let row = |tool: &ToolOffset| ToolRow {
             offset: [0.0, 0.0, tool.length],
             diameter: tool.diameter,
         };
+        let rows = options.tool_offsets.iter().map(|(&number, tool)| (number, row(tool)));
+        let used = text.contains("G43") || text.contains("g43");
         Self {
-            rows: offsets.iter().map(|(&number, tool)| (number, row(tool))).collect(),
-            diameters: diameters.clone(),
+            rows: rows.collect(),
+            diameters: options.diameters.clone(),
+            length: LengthOffset {
+                used,
+                ..LengthOffset::default()
+            },
+            ..Self::default()
         }
     }
 
@@ -63,10 +84,10 @@ impl Reader {
     pub(crate) fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
         self.refuse_compensation("a tool change")?;
         let Some(tool) = tool else { return Ok(()) };
-        if Some(tool) == self.track.tool && !self.tool_changed {
+        if Some(tool) == self.track.tool && !self.tools.changed {
             self.track.event(EventKind::ToolChange(tool))?;
         }
-        self.tool_changed = true;
+        self.tools.changed = true;
         self.track.change_tool(Some(tool))?;
         self.update_frame();
         Ok(())
@@ -77,7 +98,7 @@ impl Reader {
         self.refuse_compensation("a change of the length offset")?;
         let table = matches!(code, LengthCode::Table | LengthCode::Opposite | LengthCode::Add);
         let mut offset = if code == LengthCode::Add {
-            self.length.offset
+            self.tools.length.offset
         } else {
             [0.0; 3]
         };
@@ -102,7 +123,7 @@ impl Reader {
                 offset[k] += sign * row.offset[k];
             }
             // A length that is not known is that of the tool.
-            self.length.known = self.tools.get(number).is_some();
+            self.tools.length.known = self.tools.get(number).is_some();
         } else {
             let words = self.lengths(block, ['X', 'Y', 'Z']);
             for k in 0..3 {
@@ -111,18 +132,18 @@ impl Reader {
                     (Some(word), _) => offset[k] = word,
                     (None, LengthCode::Add) => {}
                     // G43.1 leaves the axes that it does not name.
-                    (None, _) => offset[k] = self.length.offset[k],
+                    (None, _) => offset[k] = self.tools.length.offset[k],
                 }
             }
-            self.length.known = true;
+            self.tools.length.known = true;
         }
         self.use_length(offset)
     }
 
     /// Puts a length offset into effect: the machine stays where it is.
     pub(crate) fn use_length(&mut self, offset: [f64; 3]) -> Result<(), NcProblem> {
-        self.reframe(|reader| reader.length.offset = offset)?;
-        let length = self.length.offset.map(|x| x / self.unit());
+        self.reframe(|reader| reader.tools.length.offset = offset)?;
+        let length = self.tools.length.offset.map(|x| x / self.unit());
         self.trace([Canonical::ToolOffset(length)]);
         Ok(())
     }

@@ -51,6 +51,17 @@ pub(crate) struct CallLevel {
     pub loops: Vec<(u32, usize)>,
 }
 
+/// The calls on their way.
+pub(crate) struct Calls {
+    pub levels: Vec<CallLevel>,
+    /// The block of G66, and how deep in calls it is.
+    pub modal: Option<(Block, usize)>,
+    /// By the file and the line of the call, and the call within which it is.
+    numbers: BTreeMap<(usize, usize, Option<u32>), u32>,
+    /// Where the last jump backwards led.
+    pub turned: Option<SourceLine>,
+}
+
 /// Fanuc's letters for the arguments of a macro, and their variables.
 const ARGUMENTS: [(char, usize); 21] = [
     ('A', 1),
@@ -76,14 +87,25 @@ const ARGUMENTS: [(char, usize); 21] = [
     ('Z', 26),
 ];
 
+impl Default for Calls {
+    fn default() -> Self {
+        Self {
+            levels: vec![CallLevel::default()],
+            modal: None,
+            numbers: BTreeMap::new(),
+            turned: None,
+        }
+    }
+}
+
 impl Reader {
     pub(crate) fn level(&mut self) -> &mut CallLevel {
         // There is always the level of the main program.
-        if self.levels.is_empty() {
-            self.levels.push(CallLevel::default());
+        if self.calls.levels.is_empty() {
+            self.calls.levels.push(CallLevel::default());
         }
-        let last = self.levels.len() - 1;
-        &mut self.levels[last]
+        let last = self.calls.levels.len() - 1;
+        &mut self.calls.levels[last]
     }
 
     /// Calls a subroutine of LinuxCNC.
@@ -154,7 +176,7 @@ impl Reader {
             return Ok(Step::Next);
         }
         let start = if by_block_number {
-            let line = self.sources[here.source].labels().number(number, here.line);
+            let line = self.texts.sources[here.source].labels().number(number, here.line);
             let line = line.ok_or_else(|| NcProblem::syntax(format!("M97 P{number}: there is no block N{number}")))?;
             SourceLine { line, ..here }
         } else {
@@ -236,7 +258,7 @@ impl Reader {
 
     /// G66: calls the macro after each block that moves, as G65 does, until G67. Moves within the macro do not call it again.
     pub(crate) fn begin_modal_macro(&mut self, block: &Block) -> Result<Step, NcProblem> {
-        if self.modal_macro.is_some() {
+        if self.calls.modal.is_some() {
             return Err(NcProblem::unsupported(
                 "a modal macro call within another one is",
                 "expected G67 before it",
@@ -247,7 +269,7 @@ impl Reader {
         }
         // Calls return to the level they were made from: the main program's is the first.
         self.level();
-        self.modal_macro = Some((block.clone(), self.levels.len()));
+        self.calls.modal = Some((block.clone(), self.calls.levels.len()));
         Ok(Step::Next)
     }
 
@@ -265,7 +287,7 @@ impl Reader {
     }
 
     fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
-        if self.levels.len() > DEEPEST {
+        if self.calls.levels.len() > DEEPEST {
             self.leave_level(level);
             return Err(NcProblem::syntax(format!(
                 "calls within calls are more than {DEEPEST} deep: a subprogram calls itself without end"
@@ -274,7 +296,7 @@ impl Reader {
         let parent = self.level().call;
         let key = (self.track.place.file, self.track.place.line, parent);
         let next = self.track.program.calls.len() as u32;
-        let call = *self.call_numbers.entry(key).or_insert(next);
+        let call = *self.calls.numbers.entry(key).or_insert(next);
         if call == next {
             self.track.program.calls.push(Call::new(key.0, key.1, parent));
         }
@@ -283,7 +305,7 @@ impl Reader {
             line: here.line + 1,
             ..here
         };
-        self.levels.push(level);
+        self.calls.levels.push(level);
         Ok(Step::Jump(to))
     }
 
@@ -307,7 +329,7 @@ impl Reader {
                 "this ends a subroutine that was not called by `O… call`: a subprogram called by M98 ends with M99",
             ));
         }
-        let Some(level) = self.levels.pop() else {
+        let Some(level) = self.calls.levels.pop() else {
             return Ok(Step::Next);
         };
         let back = level.back;
@@ -325,7 +347,7 @@ impl Reader {
         };
         let jump = |reader: &Self, from: SourceLine| match to_number {
             None => Ok(Step::Jump(from)),
-            Some(number) => match reader.sources[from.source].labels().number(number, from.line) {
+            Some(number) => match reader.texts.sources[from.source].labels().number(number, from.line) {
                 Some(line) => Ok(Step::Jump(SourceLine { line, ..from })),
                 None => Err(NcProblem::syntax(format!(
                     "M99 P{number}: there is no block N{number} to return to"
@@ -347,7 +369,7 @@ impl Reader {
                 Ok(Step::Jump(*start))
             }
             CallKind::Program { .. } => {
-                let Some(level) = self.levels.pop() else {
+                let Some(level) = self.calls.levels.pop() else {
                     return Ok(Step::End);
                 };
                 let back = level.back;

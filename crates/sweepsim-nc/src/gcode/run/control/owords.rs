@@ -121,12 +121,12 @@ impl Reader {
 
     /// A jump backwards: loops end by a budget.
     pub(crate) fn turn(&mut self, to: SourceLine) -> Step {
-        self.turned = Some(to);
+        self.calls.turned = Some(to);
         Step::Jump(to)
     }
 
     fn following(&self, name: &Label, here: SourceLine, keywords: &[Keyword]) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let found = labels
             .after(name, here.line)
             .find(|(_, keyword)| keywords.contains(keyword));
@@ -134,7 +134,7 @@ impl Reader {
     }
 
     fn preceding(&self, name: &Label, here: SourceLine, wanted: Keyword) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let found = labels.before(name, here.line).find(|(_, keyword)| *keyword == wanted);
         found.map(|(line, _)| line)
     }
@@ -148,7 +148,7 @@ impl Reader {
 
     /// The `do` of a loop that ends with this `while`.
     fn loop_start(&self, name: &Label, here: SourceLine) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let ends = [Keyword::Do, Keyword::While, Keyword::EndWhile];
         let (line, keyword) = labels
             .before(name, here.line)
@@ -173,7 +173,10 @@ impl Reader {
                 "there is no `{name} endsub` after the line where it begins"
             )));
         };
-        match self.sources[here.source].labels().subroutine_within(here.line, end) {
+        match self.texts.sources[here.source]
+            .labels()
+            .subroutine_within(here.line, end)
+        {
             Some(line) => Err(NcProblem::syntax(format!(
                 "a subroutine within this one, in line {}: expected one after the other",
                 line + 1
@@ -186,7 +189,7 @@ impl Reader {
     fn next_branch(&mut self, name: &Label, here: SourceLine) -> Result<Step, Located> {
         let mut line = here.line;
         loop {
-            let labels = self.sources[here.source].labels();
+            let labels = self.texts.sources[here.source].labels();
             let ends = [Keyword::ElseIf, Keyword::Else, Keyword::EndIf];
             let Some((next, found)) = labels.after(name, line).find(|(_, keyword)| ends.contains(keyword)) else {
                 let problem = NcProblem::syntax(format!("there is no `{name} endif` after this line"));
@@ -196,7 +199,7 @@ impl Reader {
             if found != Keyword::ElseIf {
                 return Ok(Step::Jump(SourceLine { line: line + 1, ..here }));
             }
-            let source = std::rc::Rc::clone(&self.sources[here.source]);
+            let source = std::rc::Rc::clone(&self.texts.sources[here.source]);
             let Some(mut cursor) = after_letter(source.line(line)) else {
                 continue;
             };
@@ -246,13 +249,13 @@ impl Reader {
         let span = 0..cursor.at;
         let main = self.level().kind == CallKind::Main;
         match main {
-            true if self.numbered => {
+            true if self.seen.numbered => {
                 self.track
                     .note(format!("{name} begins another program: this one ends here"));
                 return Ok(Step::End);
             }
             true => {
-                self.numbered = true;
+                self.seen.numbered = true;
                 if self.track.program.title.is_none() {
                     self.track.program.title = Some(name.to_string());
                 }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::super::interpreter::Reader;
 use crate::gcode::codes::MotionMode;
-use crate::gcode::offsets::Placed;
 use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::syntax::functions::Value;
@@ -162,7 +161,7 @@ impl Reader {
             "_feed" => Ok(self.modes.feed.unwrap_or(0.0)),
             "_rpm" => Ok(self.modes.speed.unwrap_or(0.0)),
             "_current_tool" => Ok(f64::from(self.track.tool.unwrap_or(0))),
-            "_selected_tool" => Ok(f64::from(self.selected_tool.unwrap_or(0))),
+            "_selected_tool" => Ok(f64::from(self.tools.selected.unwrap_or(0))),
             "_coord_system" => Ok(f64::from(match self.offsets.active {
                 index @ 0..=5 => 540 + 10 * index,
                 index => 585 + index,
@@ -175,7 +174,7 @@ impl Reader {
             "_value" | "_value_returned" => Ok(self.variables.global.get(name).copied().unwrap_or(0.0)),
             "_task" => Ok(0.0),
             "_vmajor" => Ok(2.9),
-            "_call_level" => Ok(self.levels.len() as f64 - 1.0),
+            "_call_level" => Ok(self.calls.levels.len() as f64 - 1.0),
             _ => return None,
         })
     }
@@ -239,7 +238,7 @@ impl Reader {
 
 impl Variables for Reader {
     fn fanuc(&self) -> bool {
-        matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
+        self.rules.fanuc()
     }
 
     fn numbered(&self, index: u32) -> Result<Value, NcProblem> {
@@ -249,7 +248,7 @@ impl Variables for Reader {
         if let Some(found) = self.system(index) {
             return found.map(Some);
         }
-        match self.controller {
+        match self.rules.controller {
             Some(Controller::Fanuc | Controller::Haas) if index >= 1000 => Err(NcProblem::unsupported(
                 format!("reading the control's own variable #{index} is"),
                 "only the machine knows its value",
@@ -288,25 +287,9 @@ impl Variables for Reader {
             Target::Number(index) => {
                 self.variables.get(*index).is_some()
                     || self.system(*index).is_some()
-                    || self.controller == Some(Controller::LinuxCnc) && (1..=5602).contains(index)
+                    || self.rules.controller == Some(Controller::LinuxCnc) && (1..=5602).contains(index)
             }
             Target::Name(name) => self.named(name).is_ok(),
         }
     }
-}
-
-/// The work offsets that the control's variables give.
-pub(crate) fn given_work_offsets(variables: &BTreeMap<u32, f64>, unit: f64) -> Vec<(u32, Placed)> {
-    (0..9)
-        .filter_map(|offset| {
-            let first = 5221 + 20 * offset;
-            let value = |k: u32| variables.get(&(first + k)).copied();
-            if (0..3).all(|k| value(k).is_none()) {
-                return None;
-            }
-            let origin = [0, 1, 2].map(|k| value(k).unwrap_or(0.0) * unit);
-            let turn = value(9).unwrap_or(0.0);
-            Some((offset, Placed { origin, turn }))
-        })
-        .collect()
 }

@@ -34,7 +34,7 @@ impl Reader {
     /// A block in a cycle.
     pub(crate) fn cycle(&mut self, cycle: u8, block: &Block) -> Result<(), NcProblem> {
         let name = format!("G{cycle}");
-        let haas = self.controller == Some(Controller::Haas);
+        let haas = self.rules.controller == Some(Controller::Haas);
         // Haas's G77 is Fanuc's G87; its G87 leaves the retraction to the operator, as G88 does.
         let cycle = match cycle {
             77 if haas => 87,
@@ -49,7 +49,7 @@ impl Reader {
                 )));
             }
         }
-        let linuxcnc = self.controller == Some(Controller::LinuxCnc);
+        let linuxcnc = self.rules.controller == Some(Controller::LinuxCnc);
         if cycle == 77 || linuxcnc && matches!(cycle, 76 | 87) {
             let what = match cycle {
                 76 => "threading cycles of lathes are",
@@ -147,7 +147,7 @@ impl Reader {
             return Ok(Some(at));
         }
         let [u, v, w] = self.modes.plane;
-        if self.uncertain {
+        if self.seen.uncertain {
             for k in [u, v] {
                 self.track.xyz[k] = words[k].filter(|_| self.modes.absolute);
             }

@@ -29,7 +29,7 @@ impl Reader {
             return Err(NcProblem::syntax("G53 with an arc or a cycle: expected G0 or G1"));
         }
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        if self.machine_known
+        if self.offsets.machine_known
             && let [x, y, z] = self.control_position()
             && let [Some(x), Some(y), Some(z)] = [words[0].or(x), words[1].or(y), words[2].or(z)]
         {
@@ -47,7 +47,7 @@ impl Reader {
         let Some(inverse) = self.frame_map().inverse() else {
             return Ok(());
         };
-        let end = inverse.point(std::array::from_fn(|k| control[k] - self.length.offset[k]));
+        let end = inverse.point(std::array::from_fn(|k| control[k] - self.tools.length.offset[k]));
         self.give(self.stroke_to(end, self.track.abc, rapid))
     }
 
@@ -103,7 +103,7 @@ impl Reader {
         let vector = self.has_vector(block, motion);
         let cuts = motion != MotionMode::Rapid;
         let unknown = self.track.known().is_none();
-        if self.uncertain && unknown && (cuts || !self.modes.absolute) {
+        if self.seen.uncertain && unknown && (cuts || !self.modes.absolute) {
             // Nothing is assumed about a position that an earlier problem has made unknown.
             for k in 0..3 {
                 if let Some(word) = words[k] {
@@ -111,7 +111,7 @@ impl Reader {
                 }
             }
             self.track.abc = abc;
-            if self.lenient {
+            if self.rules.lenient {
                 self.track
                     .note("left out: a move after a problem, until its start is known again");
             }

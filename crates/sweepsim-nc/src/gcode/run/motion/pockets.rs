@@ -20,7 +20,7 @@ impl Reader {
     /// the tool goes from the centre to a circle, from one to the next, and back, is in a figure only: on semicircles towards +X here, which is a note.
     pub(crate) fn circular_pocket(&mut self, counter_clockwise: bool, block: &Block) -> Result<(), NcProblem> {
         let name = if counter_clockwise { "G13" } else { "G12" };
-        if !matches!(self.controller, None | Some(Controller::Haas)) {
+        if !matches!(self.rules.controller, None | Some(Controller::Haas)) {
             return Err(NcProblem::unsupported(
                 format!("{name} is"),
                 "it is a circular pocket on Haas only; expected --controller haas",
@@ -162,7 +162,7 @@ impl Reader {
                 "expected X, Y, Z",
             ));
         }
-        if self.modes.absolute && self.stretched {
+        if self.modes.absolute && self.pending.stretched {
             return Err(NcProblem::unsupported(
                 format!("{name} right after another such move in G90 is"),
                 "controls disagree on where its way begins; expected G91",
@@ -196,7 +196,7 @@ impl Reader {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
         let mut end = match self.track.known() {
             Some(here) => here,
-            None if self.uncertain => return Ok(()),
+            None if self.seen.uncertain => return Ok(()),
             None => {
                 return Err(NcProblem::syntax(format!(
                     "{name} from an unknown position: expected a move to X, Y and Z before it"
@@ -212,7 +212,7 @@ impl Reader {
         }
         let rapid = motion == MotionMode::Rapid;
         self.give(self.stroke_to(end, self.track.abc, rapid))?;
-        self.stretched = true;
+        self.pending.stretched = true;
         Ok(())
     }
 }

@@ -11,7 +11,7 @@ use crate::text::error::NcProblem;
 impl Reader {
     /// Executes a programmed move, beside it if cutter compensation is on.
     pub(crate) fn give(&mut self, stroke: Stroke) -> Result<(), NcProblem> {
-        self.stretched = false;
+        self.pending.stretched = false;
         self.track.go(stroke)
     }
 
@@ -49,7 +49,7 @@ impl Reader {
             (true, None) => return Err(NcProblem::syntax("G41.1 without D: expected the tool's diameter")),
             (false, d) => self.cutter_diameter(d)?,
         };
-        let linuxcnc = self.controller == Some(Controller::LinuxCnc);
+        let linuxcnc = self.rules.controller == Some(Controller::LinuxCnc);
         let side = CompensationSettings {
             left: left != (diameter < 0.0),
             radius: 0.5 * diameter.abs(),
