@@ -7,6 +7,7 @@ mod contour;
 mod contour_queue;
 mod driver;
 mod holes;
+mod pockets;
 mod rapids;
 mod recorded;
 mod trace;

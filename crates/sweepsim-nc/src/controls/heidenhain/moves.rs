@@ -1,7 +1,7 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::line::{self, Line};
 use crate::drive::{CompensationSettings, Corners};
 use crate::machines::SHORTEST;
 use crate::text::error::{Located, NcProblem};
@@ -48,11 +48,8 @@ impl Reader<'_> {
             }
             let here = |problem| (problem, token.span.clone());
             let value = |reader: &Self, rest: &str| reader.parameters.value(rest).map_err(here);
-            let (relative, name) = match text.strip_prefix('I') {
-                Some(rest) => (true, rest.to_owned()),
-                None => (false, text.clone()),
-            };
-            match name.as_str() {
+            let (relative, name) = line::relative(&text);
+            match name {
                 "R0" => words.side = Some(None),
                 "RL" => words.side = Some(Some(true)),
                 "RR" => words.side = Some(Some(false)),

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::line::{self, Line};
 use crate::machines::WorkFrame;
 use crate::text::error::{Located, NcProblem};
 
@@ -28,10 +28,7 @@ impl Reader<'_> {
             7 => {
                 for token in words {
                     let here = |problem| (problem, token.span.clone());
-                    let (relative, rest) = match token.text.strip_prefix('I') {
-                        Some(rest) => (true, rest),
-                        None => (false, token.text.as_str()),
-                    };
+                    let (relative, rest) = line::relative(&token.text);
                     let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
                         let problem = NcProblem::unsupported(
                             format!("{} in a datum shift is", token.text),
@@ -63,10 +60,7 @@ impl Reader<'_> {
             10 => {
                 for token in words {
                     let here = |problem| (problem, token.span.clone());
-                    let (relative, rest) = match token.text.strip_prefix('I') {
-                        Some(rest) => (true, rest),
-                        None => (false, token.text.as_str()),
-                    };
+                    let (relative, rest) = line::relative(&token.text);
                     let Some(angle) = rest.strip_prefix("ROT") else {
                         return Err(here(NcProblem::syntax(format!(
                             "{} here: expected ROT with an angle",

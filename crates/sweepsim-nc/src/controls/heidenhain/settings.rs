@@ -1,7 +1,7 @@
 //! Tools, stock and M codes.
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::line::{self, Line};
 use crate::drive::Coordinates;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::text::error::{Located, NcProblem};
@@ -18,10 +18,7 @@ impl Reader<'_> {
             }
         };
         for token in &line.tokens[3..] {
-            let (relative, rest) = match token.text.strip_prefix('I') {
-                Some(rest) => (true, rest),
-                None => (false, token.text.as_str()),
-            };
+            let (relative, rest) = line::relative(&token.text);
             let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
                 continue;
             };

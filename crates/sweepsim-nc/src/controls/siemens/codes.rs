@@ -184,12 +184,9 @@ impl Reader<'_> {
             self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
         } else {
             let times = words.plain("P").unwrap_or(1.0);
-            if !(1.0..=9999.0).contains(&times) || times.fract() != 0.0 {
-                return Err((
-                    NcProblem::value("the number of calls P", times, "a whole number from 1 to 9999"),
-                    words.span("P"),
-                ));
-            }
+            let expected = "a whole number from 1 to 9999";
+            let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
+                .map_err(|problem| (problem, words.span("P")))?;
             self.pending = Some((name.to_owned(), values, times as usize));
         }
         Ok(())

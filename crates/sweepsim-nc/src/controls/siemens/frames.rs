@@ -77,14 +77,7 @@ impl Reader<'_> {
             return self.plane_coordinates();
         }
         let mode = get(3);
-        if mode.fract() != 0.0 || !(0.0..=255.0).contains(&mode) {
-            return Err(NcProblem::value(
-                "_MODE of CYCLE800",
-                mode,
-                "a whole number from 0 to 255",
-            ));
-        }
-        let mode = mode as u32;
+        let mode = NcProblem::whole("_MODE of CYCLE800", mode, 0..=255, "a whole number from 0 to 255")?;
         if mode >> 6 != 0 {
             return Err(NcProblem::unsupported(
                 "CYCLE800 with solid or projection angles, or with angles of rotary axes, is",

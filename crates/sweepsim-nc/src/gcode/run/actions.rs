@@ -36,10 +36,12 @@ impl Reader {
             Code::Stretch(code) => self.stretch(code, block)?,
             Code::WorkOffset(index) => self.select(index)?,
             Code::WorkOffsetByWord => match block.get('P') {
-                Some(p) if p.fract() == 0.0 && (1.0..=999.0).contains(&p) => self.select(EXTENDED + p as u32)?,
+                Some(p) => {
+                    let p = NcProblem::whole("P of a work offset", p, 1..=999, "a whole number from 1 on")?;
+                    self.select(EXTENDED + p)?;
+                }
                 // G54.1 is G54 on some controls.
                 None => self.select(0)?,
-                Some(p) => return Err(NcProblem::value("P of a work offset", p, "a whole number from 1 on")),
             },
             Code::Home { second } => self.home(usize::from(second), block)?,
             Code::SetHome { second } => {
@@ -133,17 +135,12 @@ impl Reader {
     fn set_offsets(&mut self, block: &Block, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
         let p = block.get('P').unwrap_or(0.0);
         let fanuc = self.fanuc();
-        let l = match block.get('L') {
-            Some(l) if l.fract() == 0.0 && (0.0..=99.0).contains(&l) => l as u32,
-            Some(l) => return Err(NcProblem::value("L of G10", l, "a whole number from 0 to 99")),
-            None => 0,
-        };
+        let l = block.get('L').unwrap_or(0.0);
+        let l = NcProblem::whole("L of G10", l, 0..=99, "a whole number from 0 to 99")?;
         match l {
             2 | 20 => {
-                if p.fract() != 0.0 || !(0.0..=if fanuc { 300.0 } else { 9.0 }).contains(&p) {
-                    return Err(NcProblem::value("P of G10", p, "a whole number from 0 to 9"));
-                }
-                let p = p as u32;
+                let most = if fanuc { 300 } else { 9 };
+                let p = NcProblem::whole("P of G10", p, 0..=most, "a whole number from 0 to 9")?;
                 if l == 20 && !fanuc {
                     self.check_angles(block, "G10 L20")?;
                     return self.place_here(p, words);

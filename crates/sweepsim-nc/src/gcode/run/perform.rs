@@ -31,20 +31,14 @@ impl Reader {
         if block.is_empty() {
             return Ok(Step::Next);
         }
-        let has = |code: f64| {
-            block
-                .words()
-                .iter()
-                .any(|word| word.letter == 'G' && word.value == code)
-        };
+        let has = |code: f64| block.words().iter().any(|w| (w.letter, w.value) == ('G', code));
         if has(66.0) {
             return self.begin_modal_macro(block).map_err(|problem| (problem, block.all()));
         }
         if has(67.0) {
             self.calls.modal = None;
         }
-        let macro_call = block.has('G') && block.words().iter().any(|w| w.letter == 'G' && w.value == 65.0);
-        if !macro_call {
+        if !has(65.0) {
             self.check_letters(block)?;
         }
         self.check_plane_blocks(block)
@@ -232,18 +226,11 @@ impl Reader {
                 Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
-                Code::TipControl(on) => {
-                    self.tip.by_length = on;
-                    self.tip.vectors = false;
-                }
-                Code::TipVectors => {
-                    self.tip.by_length = true;
-                    self.tip.vectors = true;
-                }
+                Code::TipControl(on) => (self.tip.by_length, self.tip.vectors) = (on, false),
+                Code::TipVectors => (self.tip.by_length, self.tip.vectors) = (true, true),
                 Code::TipControlByLetters => {
                     self.track.driver.prefer(Sense::Tool);
-                    self.tip.by_length = true;
-                    self.tip.vectors = false;
+                    (self.tip.by_length, self.tip.vectors) = (true, false);
                 }
                 Code::CancelLength => {
                     self.tip.by_length = false;
@@ -262,8 +249,6 @@ impl Reader {
                         plan.length = slot;
                     }
                 }
-                code @ Code::WorkOffset(_) => self.act(code, block).map_err(|problem| (problem, word.span()))?,
-                code @ Code::WorkOffsetByWord => self.act(code, block).map_err(|problem| (problem, word.span()))?,
                 Code::Compensation { left, by_words } => self
                     .compensate(left, by_words, block)
                     .map_err(|problem| (problem, word.span()))?,
@@ -273,7 +258,7 @@ impl Reader {
                     .map_err(|problem| (problem, word.span()))?,
                 Code::MachineCoordinates => plan.machine_coordinates = true,
                 Code::Polar(on) => self.modes.polar = on,
-                code @ (Code::CancelRotation | Code::CancelScale) => {
+                code @ (Code::WorkOffset(_) | Code::WorkOffsetByWord | Code::CancelRotation | Code::CancelScale) => {
                     self.act(code, block).map_err(|problem| (problem, word.span()))?;
                 }
                 Code::Dwell => plan.dwell = true,

@@ -73,11 +73,7 @@ impl ToolTable {
 impl Reader {
     /// A tool's number.
     pub(crate) fn tool_number(value: f64) -> Result<u32, NcProblem> {
-        if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
-            Ok(value as u32)
-        } else {
-            Err(NcProblem::value("a tool number", value, "a whole number"))
-        }
+        NcProblem::whole("a tool number", value, 0..=u32::MAX, "a whole number")
     }
 
     /// The new tool continues from the current position, on a separate path.

@@ -154,14 +154,8 @@ impl Reader {
                 "{code} without P: expected the number of a subprogram"
             )));
         };
-        if p.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&p) {
-            return Err(NcProblem::value(
-                format!("P of {code}"),
-                p,
-                "a whole number from 0 to 99999999",
-            ));
-        }
-        let mut number = p as u32;
+        let expected = "a whole number from 0 to 99999999";
+        let mut number = NcProblem::whole(format!("P of {code}"), p, 0..=99_999_999, expected)?;
         let mut times = self.times(block)?;
         // Fanuc's short form: P51002 is five times O1002.
         if !by_block_number
@@ -275,15 +269,13 @@ impl Reader {
 
     /// How often to execute it: L.
     fn times(&self, block: &Block) -> Result<u32, NcProblem> {
-        match block.get('L') {
-            None => Ok(1),
-            Some(l) if l.fract() == 0.0 && (0.0..=99_999.0).contains(&l) => Ok(l as u32),
-            Some(l) => Err(NcProblem::value(
-                "the number of repeats L",
-                l,
-                "a whole number from 0 to 99999",
-            )),
-        }
+        let l = block.get('L').unwrap_or(1.0);
+        NcProblem::whole(
+            "the number of repeats L",
+            l,
+            0..=99_999,
+            "a whole number from 0 to 99999",
+        )
     }
 
     fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
@@ -340,11 +332,8 @@ impl Reader {
 
     /// M99.
     pub(crate) fn leave_program(&mut self, block: &Block, here: SourceLine) -> Result<Step, NcProblem> {
-        let to_number = match block.get('P') {
-            None => None,
-            Some(p) if p.fract() == 0.0 && (0.0..=1e8).contains(&p) => Some(p as u32),
-            Some(p) => return Err(NcProblem::value("P of M99", p, "the number of a block")),
-        };
+        let number = |p: f64| NcProblem::whole("P of M99", p, 0..=100_000_000, "the number of a block");
+        let to_number = block.get('P').map(number).transpose()?;
         let jump = |reader: &Self, from: SourceLine| match to_number {
             None => Ok(Step::Jump(from)),
             Some(number) => match reader.texts.sources[from.source].labels().number(number, from.line) {

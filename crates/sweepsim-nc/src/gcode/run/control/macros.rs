@@ -71,14 +71,9 @@ impl Reader {
         let (value, _) = values.value()?;
         let span = start..values.cursor.at;
         let number = value.unwrap_or(0.0);
-        if number.fract() != 0.0 || !(0.0..=999_999_999.0).contains(&number) {
-            let problem = NcProblem::value("the block number of GOTO", number, "a whole number");
-            return Err((problem, span));
-        }
-        match self.texts.sources[here.source]
-            .labels()
-            .number(number as u32, here.line)
-        {
+        let number = NcProblem::whole("the block number of GOTO", number, 0..=999_999_999, "a whole number");
+        let number = number.map_err(|problem| (problem, span.clone()))?;
+        match self.texts.sources[here.source].labels().number(number, here.line) {
             Some(line) if line <= here.line => Ok(self.turn(SourceLine { line, ..here })),
             Some(line) => Ok(Step::Jump(SourceLine { line, ..here })),
             None => {

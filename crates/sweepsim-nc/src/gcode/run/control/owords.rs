@@ -29,11 +29,8 @@ impl Reader {
                 let (value, _) = values.value()?;
                 cursor = values.cursor;
                 let value = value.unwrap_or(0.0);
-                if value.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&value) {
-                    let problem = NcProblem::value("the number of a subroutine", value, "a whole number");
-                    return Err((problem, start..cursor.at));
-                }
-                Label::Number(value as u32)
+                let number = NcProblem::whole("the number of a subroutine", value, 0..=99_999_999, "a whole number");
+                Label::Number(number.map_err(|problem| (problem, start..cursor.at))?)
             }
         };
         let Some(keyword) = keyword(&mut cursor) else {

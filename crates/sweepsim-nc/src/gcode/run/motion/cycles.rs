@@ -16,7 +16,7 @@ use crate::text::error::NcProblem;
 /// setting; it concerns moves where the tool has been before.
 const PECK_CLEARANCE: f64 = 0.254;
 /// Repeats of one block, at most.
-const MOST_REPEATS: f64 = 1e6;
+const MOST_REPEATS: u32 = 1_000_000;
 
 impl Reader {
     /// A cycle begins: nothing of the one before stays, but the height it started from.
@@ -82,14 +82,13 @@ impl Reader {
             )));
         };
         let repeats = block.get('L').or(block.get('K')).unwrap_or(1.0);
-        if repeats.fract() != 0.0 || !(0.0..=MOST_REPEATS).contains(&repeats) {
-            return Err(NcProblem::value(
-                "the number of repeats",
-                repeats,
-                "a whole number from 0 on",
-            ));
-        }
-        if repeats == 0.0 {
+        let repeats = NcProblem::whole(
+            "the number of repeats",
+            repeats,
+            0..=MOST_REPEATS,
+            "a whole number from 0 on",
+        )?;
+        if repeats == 0 {
             // Only the words are kept.
             return Ok(());
         }
@@ -120,7 +119,7 @@ impl Reader {
             at[w] = plane;
             self.give(self.stroke_to(at, self.track.abc, true))?;
         }
-        for repeat in 0..repeats as u32 {
+        for repeat in 0..repeats {
             for k in [u, v] {
                 match words[k] {
                     Some(word) if !absolute => at[k] += word,

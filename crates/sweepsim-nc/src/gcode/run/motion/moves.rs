@@ -229,13 +229,7 @@ impl Reader {
         block: &Block,
     ) -> Result<CircularArc, NcProblem> {
         let turns = block.get('P').unwrap_or(1.0);
-        if turns.fract() != 0.0 || !(1.0..=1e4).contains(&turns) {
-            return Err(NcProblem::value(
-                "the number of turns P",
-                turns,
-                "a whole number from 1 on",
-            ));
-        }
+        NcProblem::whole("the number of turns P", turns, 1..=10_000, "a whole number from 1 on")?;
         if let Some(word) = block
             .first("LQ")
             .filter(|word| word.value != 0.0 && (word.letter, word.value) != ('L', 1.0))
