@@ -45,6 +45,7 @@ pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,
 };
+pub use model::assumption::Assumption;
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
 pub use model::poses::ProgramPoses;

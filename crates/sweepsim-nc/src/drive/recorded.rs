@@ -124,6 +124,11 @@ impl Track {
     }
 
     pub fn finish(mut self) -> Program {
+        self.assume_offsets();
+        self.program.assumptions = self.assumptions.finish();
+        for assumption in &self.program.assumptions {
+            self.notes.add(assumption.line, assumption.to_string());
+        }
         self.program.notes = self.notes.finish();
         let machine = &mut self.program.machine;
         machine.table = machine.table.or(self.driver.implied_table());

@@ -1,12 +1,17 @@
 //! The course of a tool: where it is, in which frame, and its poses so far. Readers say where it goes.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace};
+use super::cutters::Cutters;
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
+use super::work_offsets::{Elsewhere, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
+use crate::model::assumption::AssumptionList;
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
@@ -51,6 +56,14 @@ pub(crate) struct Track {
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
+    pub(super) strict: bool,
+    pub(super) cutters: Cutters,
+    pub(super) assumptions: AssumptionList,
+    /// The work offset of the moves, if only the machine knows where it is.
+    pub(super) elsewhere: Option<Elsewhere>,
+    pub(super) left_out: BTreeMap<String, LeftOut>,
+    /// The axes along which a move that only the machine knows has gone.
+    pub(super) lost: [bool; 3],
 }
 
 impl Track {
@@ -90,6 +103,12 @@ impl Track {
             of_poses: false,
             contour: Contour::default(),
             text: 0,
+            strict: options.strict,
+            cutters: Cutters::new(options),
+            assumptions: AssumptionList::default(),
+            elsewhere: None,
+            left_out: BTreeMap::new(),
+            lost: [false; 3],
         }
     }
 
@@ -196,6 +215,12 @@ impl Track {
         for (coordinate, moves) in self.xyz.iter_mut().zip(axes) {
             if moves || any {
                 *coordinate = None;
+            }
+        }
+        for k in (0..3).filter(|&k| axes[k] || any) {
+            self.lost[k] = true;
+            if let Some(elsewhere) = &mut self.elsewhere {
+                elsewhere.kept[k] = None;
             }
         }
         self.parked = None;
@@ -323,9 +348,13 @@ impl Track {
         self.xyz = xyz.map(Some);
         self.abc = abc;
         self.parked = None;
+        self.lost = [false; 3];
     }
 
     pub(super) fn push(&mut self, to: Position, way: Move, rapid: bool) -> Result<(), NcProblem> {
+        if self.leaves_out(rapid) {
+            return Ok(());
+        }
         let pose = match self.direct {
             Some(direction) if self.coordinates == Coordinates::Tip => {
                 let axis = Vector3::from(direction).normalize();

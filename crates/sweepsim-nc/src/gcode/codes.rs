@@ -1,8 +1,8 @@
 //! The meaning of G and M codes.
 
-use super::offsets::{EXTENDED, WorkOffset};
+use super::offsets::EXTENDED;
 use super::syntax::block::Block;
-use crate::drive::ArcPlane;
+use crate::drive::{ArcPlane, WorkOffset};
 use crate::model::event::Coolant;
 use crate::model::program::FeedMode;
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::machines::{Machine, Position};
+use crate::model::assumption::Assumption;
 use crate::model::event::Event;
 use crate::model::names::Format;
 pub use crate::model::pose::{FeedMode, ProgramPose};
@@ -109,6 +110,8 @@ pub struct Program {
     pub stock: Option<StockDescription>,
     /// The machine, as given or as implied by the program's words.
     pub machine: Machine,
+    /// What the program leaves to the control or to the operator, and what was taken in its place: the worst first. Each is a note too.
+    pub assumptions: Vec<Assumption>,
     /// What was ignored or assumed: one note of each kind, sorted by line.
     pub notes: Vec<Note>,
 }

@@ -50,6 +50,15 @@ pub struct ReadOptions {
     /// Diameters that `D` means, by number, in millimetres, where the table has no row of it: without one, nothing is known of a length, but the
     /// contour can be compensated. In Siemens's and Heidenhain's programs the number is the tool's.
     pub diameters: BTreeMap<u32, f64>,
+    /// Diameters of the tools themselves, by number, in millimetres, as a job or a library describes them: what `D` is assumed to mean where nothing says it.
+    pub cutters: BTreeMap<u32, f64>,
+    /// Where work offsets are that the program does not set, by name (`G55`, `G54.1P3`, `G505`, `preset2`), in millimetres from the zero of the first one that
+    /// it uses.
+    pub offsets: BTreeMap<String, [f64; 3]>,
+    /// Whether [`diameters`](Self::diameters) and [`offsets`](Self::offsets) are in the program's unit instead of millimetres.
+    pub in_program_units: bool,
+    /// Whether what a program leaves to the control or to the operator is an error, instead of an [`Assumption`](crate::Assumption).
+    pub strict: bool,
     /// The control's numbered variables when the program starts, as in LinuxCNC's `.var` file: work offsets from `#5221`, homes from `#5161`.
     /// With them, positions in machine coordinates are known, and work offsets that the program does not set.
     pub variables: BTreeMap<u32, f64>,
@@ -81,6 +90,10 @@ impl Default for ReadOptions {
             block_delete: false,
             tool_offsets: BTreeMap::new(),
             diameters: BTreeMap::new(),
+            cutters: BTreeMap::new(),
+            offsets: BTreeMap::new(),
+            in_program_units: false,
+            strict: false,
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             most_blocks: 20_000_000,

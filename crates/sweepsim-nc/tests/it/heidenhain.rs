@@ -12,7 +12,9 @@ fn exact(text: &str) -> Program {
 }
 
 fn error(text: &str) -> String {
-    heidenhain::read(text, &ReadOptions::default()).unwrap_err().to_string()
+    let mut strict = ReadOptions::default();
+    strict.strict = true;
+    heidenhain::read(text, &strict).unwrap_err().to_string()
 }
 
 fn tips(program: &Program) -> Vec<[f64; 3]> {
@@ -236,7 +238,8 @@ fn frames() {
         [1.0, 2.0, 3.0],
     );
     assert!(
-        error("CYCL DEF 247 Q339=+4\nL X+1 Y+2 Z+3 FMAX\nCYCL DEF 247 Q339=+5").contains("preset 5 after preset 4")
+        error("CYCL DEF 247 Q339=+4\nL X+1 Y+2 Z+3 FMAX\nCYCL DEF 247 Q339=+5\nL X+2 FMAX")
+            .contains("a move in preset 5, which")
     );
     // A plane at a shifted datum: Rz(90) Rx(90) x = y, its z is x.
     let program =

@@ -2,6 +2,7 @@
 
 mod accelerations;
 mod apt;
+mod assumptions;
 mod contents;
 mod contours;
 mod fuzz;

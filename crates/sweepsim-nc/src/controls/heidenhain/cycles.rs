@@ -65,7 +65,8 @@ impl Reader<'_> {
         }
     }
 
-    fn define(&self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
+    fn define(&mut self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
+        let tool = if number == 208 { self.cutter_radius() } else { None };
         let find = |parameter: u32| -> Result<Option<f64>, Located> {
             let name = format!("Q{parameter}=");
             for (index, token) in line.tokens.iter().enumerate() {
@@ -167,7 +168,7 @@ impl Reader<'_> {
             }
             208 => {
                 let (diameter, pitch) = (need(335)?, need(334)?);
-                let Some(tool) = self.cutter_radius() else {
+                let Some(tool) = tool else {
                     let problem = NcProblem::syntax(
                         "the radius of the tool of cycle 208 is not known: expected it in the tool table, or TOOL DEF … R",
                     );

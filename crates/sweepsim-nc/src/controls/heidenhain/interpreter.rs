@@ -78,7 +78,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         parameters: Parameters::default(),
-        frames: Frames::default(),
+        frames: Frames::new(options),
         modes: Modes {
             inch: options.inch,
             plane: [0, 1, 2],
@@ -101,6 +101,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         tools: BTreeMap::new(),
         stock: [[None; 3]; 2],
     };
+    reader.track.describe_tools(text);
     run::run(&mut reader, text, options)?;
     Ok(reader.finish())
 }

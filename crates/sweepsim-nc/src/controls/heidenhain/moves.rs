@@ -193,13 +193,19 @@ impl Reader<'_> {
         let cuts = !words.rapid;
         let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP");
         let [u, v, _] = self.modes.plane;
-        for k in 0..3 {
+        self.track.use_offset(&mut self.frames.work).map_err(whole)?;
+        let needed = |k: usize| {
             let relative = words.axes[k].is_some_and(|(_, relative)| relative);
             let given = words.axes[k].is_some() || polar && (k == u || k == v);
-            if self.track.xyz[k].is_none() && (relative || cuts && !given) && !self.uncertain {
-                self.track.note(format!("{} is not known here: taken as 0", AXES[k]));
-                self.track.xyz[k] = Some(0.0);
+            relative || cuts && !given
+        };
+        if !self.uncertain && !self.track.complete(needed) {
+            for k in 0..3 {
+                if let Some((value, false)) = words.axes[k] {
+                    self.track.xyz[k] = Some(value);
+                }
             }
+            return Ok(None);
         }
         let mut xyz = self.track.xyz;
         if polar {
@@ -339,12 +345,20 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool with the oversize of its call.
-    pub(super) fn cutter_radius(&self) -> Option<f64> {
+    pub(super) fn cutter_radius(&mut self) -> Option<f64> {
         let tool = self.track.tool?;
         let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
-        let table = table
-            .or(self.options.diameters.get(&tool).copied())
-            .map(|diameter| 0.5 * diameter);
-        Some(self.modes.radii.get(&tool).copied().or(table)? + self.modes.oversize)
+        let table = table.or(self.options.diameters.get(&tool).copied());
+        let known = self.modes.radii.get(&tool).copied();
+        let known = known.or(table.map(|diameter| 0.5 * diameter));
+        let radius = match known {
+            Some(radius) => radius,
+            None => {
+                let (register, unit) = (format!("the radius of tool {tool}"), self.unit());
+                let assumed = self.track.assume_diameter(&register, &format!("D{tool}"), unit, false);
+                0.5 * assumed?
+            }
+        };
+        Some(radius + self.modes.oversize)
     }
 }

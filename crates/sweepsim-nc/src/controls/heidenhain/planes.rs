@@ -100,13 +100,8 @@ impl Reader<'_> {
                         )));
                     }
                 };
-                let first = *self.frames.preset.get_or_insert(number);
-                if first != number {
-                    return Err(whole(NcProblem::unsupported(
-                        format!("preset {number} after preset {first} is"),
-                        "only the machine knows the distance between them; expected one preset",
-                    )));
-                }
+                let expected = "a whole number from 0 to 999";
+                self.frames.work.active = NcProblem::whole("Q339", number, 0..=999, expected).map_err(whole)?;
             }
         }
         self.apply_frames().map_err(|problem| (problem, line.all()))

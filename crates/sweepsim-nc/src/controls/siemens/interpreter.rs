@@ -59,7 +59,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         modes: Modes::new(options),
-        frames: Frames::default(),
+        frames: Frames::new(options),
         options,
         library,
         routines: Vec::new(),
@@ -72,6 +72,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     };
     reader.add(Rc::clone(text), 0);
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
+    reader.track.describe_tools(text);
     run::run(&mut reader, text, options)?;
     let mut program = reader.track.finish();
     program.format = Some(Format::Gcode);

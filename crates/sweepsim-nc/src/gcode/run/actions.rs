@@ -1,11 +1,13 @@
 //! Codes that set coordinates instead of moving to them.
 
 use super::interpreter::Reader;
+use crate::drive::{Placed, WorkOffset};
 use crate::gcode::codes::{Code, MotionMode};
-use crate::gcode::offsets::{EXTENDED, Placed, WorkOffset, known};
+use crate::gcode::offsets::{EXTENDED, known};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::machines::WorkFrame;
+use crate::model::assumption::Assumption;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -123,10 +125,10 @@ impl Reader {
     }
 
     fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {
-        if index != self.offsets.active {
+        if index != self.offsets.work.active {
             self.refuse_compensation("a change of the work offset")?;
         }
-        self.reframe(|reader| reader.offsets.active = index)?;
+        self.reframe(|reader| reader.offsets.work.active = index)?;
         self.trace_offsets();
         Ok(())
     }
@@ -162,15 +164,15 @@ impl Reader {
                     }
                     let index = match (p, l) {
                         (p, 20) => EXTENDED + p,
-                        (0, _) => reader.offsets.active,
+                        (0, _) => reader.offsets.work.active,
                         (p, _) => p - 1,
                     };
-                    let before = reader.offsets.placed(index).unwrap_or_default();
+                    let before = reader.offsets.work.placed(index).unwrap_or_default();
                     let placed = Placed {
                         origin: std::array::from_fn(|k| added(before.origin[k], words[k])),
                         turn: turn.unwrap_or(before.turn),
                     };
-                    reader.offsets.place(index, placed);
+                    reader.offsets.work.place(index, placed);
                 })?;
                 self.trace_offsets();
                 Ok(())
@@ -186,8 +188,8 @@ impl Reader {
 
     /// G10 L20: gives the current position the given coordinates in a work offset.
     fn place_here(&mut self, p: u32, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
-        let index = if p == 0 { self.offsets.active } else { p - 1 };
-        let mut placed = self.offsets.placed(index).unwrap_or_default();
+        let index = if p == 0 { self.offsets.work.active } else { p - 1 };
+        let mut placed = self.offsets.work.placed(index).unwrap_or_default();
         let local = self.modes.local_map();
         if local != WorkFrame::default() {
             return Err(NcProblem::unsupported(
@@ -223,7 +225,7 @@ impl Reader {
                 placed.origin[k] = known(here[k])? - from[k];
             }
         }
-        self.reframe(|reader| reader.offsets.place(index, placed))?;
+        self.reframe(|reader| reader.offsets.work.place(index, placed))?;
         self.trace_offsets();
         Ok(())
     }
@@ -295,7 +297,7 @@ impl Reader {
         let any = block.first("XYZABC").is_some();
         let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.track.xyz[k].is_some());
         if (any || self.track.trace.is_some()) && known && !self.seen.uncertain {
-            self.offsets.use_active()?;
+            self.track.use_offset(&mut self.offsets.work)?;
             self.go(MotionMode::Rapid, block)?;
         }
         let named = |k: usize| !any || words[k].is_some();
@@ -304,11 +306,20 @@ impl Reader {
                 *angle = 0.0;
             }
         }
+        let assumed = (which == 0 && self.offsets.work.is_placed()).then_some([0.0; 3]);
         if let (Some(home), true, [Some(x), Some(y), Some(z)]) = (
-            self.offsets.homes[which],
-            self.offsets.machine_known,
+            self.offsets.homes[which].or(assumed),
+            self.offsets.knows_machine(),
             self.control_position(),
         ) {
+            if self.offsets.homes[which].is_none() {
+                self.track.assume(Assumption::new(
+                    "the machine's home (G28)",
+                    "the zero of its coordinates",
+                    "the control's variables from #5161",
+                ));
+            }
+            self.track.use_offset(&mut self.offsets.work)?;
             let now = [x, y, z];
             return self.go_to_control(std::array::from_fn(|k| if named(k) { home[k] } else { now[k] }), true);
         }

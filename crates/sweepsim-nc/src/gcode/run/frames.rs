@@ -27,7 +27,7 @@ impl Reader {
 
     /// The position in machine coordinates, if those are known.
     pub(crate) fn machine_position(&self) -> [Option<f64>; 3] {
-        if self.offsets.machine_known || self.offsets.active_is_placed() {
+        if self.offsets.knows_machine() {
             self.control_position()
         } else {
             [None; 3]
@@ -98,10 +98,10 @@ impl Reader {
 
     pub(crate) fn trace_offsets(&mut self) {
         let unit = self.unit();
-        let placed = self.offsets.placed(self.offsets.active).unwrap_or_default();
+        let placed = self.offsets.work.placed(self.offsets.work.active).unwrap_or_default();
         self.trace([
             Canonical::WorkOffset {
-                index: self.offsets.active + 1,
+                index: self.offsets.work.active + 1,
                 origin: placed.origin.map(|x| x / unit),
             },
             Canonical::Shift(self.offsets.shift.map(|x| x / unit)),

@@ -86,12 +86,15 @@ pub(crate) struct Input<'a> {
 pub(crate) struct Outcome {
     pub program: Result<Program, NcError>,
     pub trace: Vec<Canonical>,
+    /// Whether something was assumed.
+    assumed: bool,
 }
 
 pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
     let fail = |error| Outcome {
         program: Err(error),
         trace: Vec::new(),
+        assumed: false,
     };
     if let Err(error) = options.check() {
         return fail(error);
@@ -100,10 +103,24 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         let problem = NcProblem::value("the size of a program", input.text.len(), "less than 2 GB");
         return fail(NcError::new(problem, None));
     }
+    let read = |wear_alone| read_once(input, options, trace, wear_alone);
+    let outcome = read(false);
+    // Contours that cannot be offset by the tool's radius are those of the tool itself.
+    let assumed = outcome.assumed && outcome.program.is_err();
+    match assumed.then(|| read(true)) {
+        Some(other) if other.program.is_ok() => other,
+        _ => outcome,
+    }
+}
+
+/// `wear_alone`: registers D that nothing sets are 0.
+fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool) -> Outcome {
     let mut reader = Reader::new(input, options);
+    reader.tools.wear_alone = wear_alone;
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
+    let assumed = reader.track.assumes();
     let program = NcError::all(errors).map_or(Ok(()), Err);
     let program = program.and_then(|()| match options.lenient {
         true => Ok(()),
@@ -116,7 +133,11 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         files: reader.texts.files,
         ..reader.track.finish()
     });
-    Outcome { program, trace }
+    Outcome {
+        program,
+        trace,
+        assumed,
+    }
 }
 
 impl Reader {
@@ -128,7 +149,7 @@ impl Reader {
             calls: Calls::default(),
             modes: Modes::new(options.inch),
             variables: Store::new(&options.variables),
-            offsets: Offsets::new(&options.variables, if options.inch { 25.4 } else { 1.0 }),
+            offsets: Offsets::new(options),
             tools: ToolTable::new(options, input.text),
             tip: TipControl {
                 kinematics: options.machine.tip_control,
@@ -138,6 +159,7 @@ impl Reader {
             seen: Seen::default(),
             rules,
         };
+        reader.track.describe_tools(input.text);
         reader.update_frame();
         if let Some(start) = options.start {
             let xyz = reader.track.frame().inverse_point(start);

@@ -162,7 +162,7 @@ impl Reader {
                 if plan.machine_coordinates {
                     self.go_in_machine_coordinates(motion, block).map_err(whole)
                 } else {
-                    self.offsets.use_active().map_err(whole)?;
+                    self.track.use_offset(&mut self.offsets.work).map_err(whole)?;
                     match motion {
                         MotionMode::Cycle(cycle) => self.cycle(cycle, block).map_err(whole),
                         _ => self.go(motion, block).map_err(whole),

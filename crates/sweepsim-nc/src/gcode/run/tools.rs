@@ -9,7 +9,7 @@ use crate::gcode::offsets::known;
 use crate::gcode::syntax::block::Block;
 use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
-use crate::model::read_options::{ReadOptions, ToolOffset};
+use crate::model::read_options::{Controller, ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
 /// A row of the table, in millimetres.
@@ -32,9 +32,12 @@ pub(crate) struct LengthOffset {
 /// The table, and what of it is in effect.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ToolTable {
-    rows: BTreeMap<u32, ToolRow>,
+    /// Each as measured, and its wear.
+    rows: BTreeMap<u32, [ToolRow; 2]>,
     /// Diameters of numbers without a row.
     diameters: BTreeMap<u32, f64>,
+    /// Registers D that nothing sets are 0, not the radius of the tool.
+    pub wear_alone: bool,
     pub length: LengthOffset,
     /// By a T word, not yet in the spindle.
     pub selected: Option<u32>,
@@ -43,9 +46,12 @@ pub(crate) struct ToolTable {
 
 impl ToolTable {
     pub(crate) fn new(options: &ReadOptions, text: &str) -> Self {
-        let row = |tool: &ToolOffset| ToolRow {
-            offset: [0.0, 0.0, tool.length],
-            diameter: tool.diameter,
+        let row = |tool: &ToolOffset| {
+            let measured = ToolRow {
+                offset: [0.0, 0.0, tool.length],
+                diameter: tool.diameter,
+            };
+            [measured, ToolRow::default()]
         };
         let rows = options.tool_offsets.iter().map(|(&number, tool)| (number, row(tool)));
         let used = text.contains("G43") || text.contains("g43");
@@ -61,7 +67,11 @@ impl ToolTable {
     }
 
     pub(crate) fn get(&self, number: u32) -> Option<ToolRow> {
-        self.rows.get(&number).copied()
+        let [measured, wear] = self.rows.get(&number)?;
+        Some(ToolRow {
+            offset: std::array::from_fn(|k| measured.offset[k] + wear.offset[k]),
+            diameter: measured.diameter + wear.diameter,
+        })
     }
 
     /// What is known of a tool without a row.
@@ -155,17 +165,19 @@ impl Reader {
             }
         };
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let mut row = self.tools.get(number).unwrap_or_default();
+        let [mut row, mut wear] = self.tools.rows.get(&number).copied().unwrap_or_default();
         let r = block.get('R').map(|r| r * self.unit());
         let fanuc = words.iter().all(Option::is_none) && r.is_some() && l >= 10;
         if fanuc {
+            // In G91 it adds, as G10 L2 does there.
+            let adds = !self.modes.absolute && self.rules.controller != Some(Controller::LinuxCnc);
+            let set = |place: &mut f64, value: f64| *place = if adds { *place + value } else { value };
             let r = r.unwrap_or(0.0);
             match l {
-                10 => row.offset[2] = r,
-                12 => row.diameter = 2.0 * r,
-                // Wear, on top of the geometry.
-                11 => row.offset[2] += r,
-                _ => row.diameter += 2.0 * r,
+                10 => set(&mut row.offset[2], r),
+                12 => set(&mut row.diameter, 2.0 * r),
+                11 => set(&mut wear.offset[2], r),
+                _ => set(&mut wear.diameter, 2.0 * r),
             }
         } else {
             if l >= 12 {
@@ -185,7 +197,7 @@ impl Reader {
                 _ => self.measure_tool(l == 11, words, &mut row)?,
             }
         }
-        self.tools.rows.insert(number, row);
+        self.tools.rows.insert(number, [row, wear]);
         self.update_frame();
         Ok(())
     }
@@ -195,7 +207,7 @@ impl Reader {
     fn measure_tool(&self, fixture: bool, words: [Option<f64>; 3], row: &mut ToolRow) -> Result<(), NcProblem> {
         let mut frame = self.frame_map();
         if fixture {
-            let placed = self.offsets.placed(8).unwrap_or_default();
+            let placed = self.offsets.work.placed(8).unwrap_or_default();
             frame = WorkFrame::shifted(placed.origin);
         }
         let control = self.control_position();

@@ -87,7 +87,7 @@ impl Reader {
         };
         let at = self.track.xyz;
         if let Some((offset, part)) = of_work_offset(index) {
-            let placed = self.offsets.placed(offset)?;
+            let placed = self.offsets.work.placed(offset)?;
             return Some(Ok(match part {
                 0..=2 => self.in_units(placed.origin[part]),
                 9 if !fanuc => placed.turn,
@@ -110,7 +110,7 @@ impl Reader {
                 }),
                 4003 => Ok(if self.modes.absolute { 90.0 } else { 91.0 }),
                 4006 => Ok(if self.modes.inch { 20.0 } else { 21.0 }),
-                4014 if self.offsets.active < 6 => Ok(f64::from(54 + self.offsets.active)),
+                4014 if self.offsets.work.active < 6 => Ok(f64::from(54 + self.offsets.work.active)),
                 4109 => Ok(self.modes.feed.unwrap_or(0.0)),
                 4119 => Ok(self.modes.speed.unwrap_or(0.0)),
                 4120 => Ok(f64::from(self.track.tool.unwrap_or(0))),
@@ -122,7 +122,7 @@ impl Reader {
                 5210 => Ok(if self.offsets.shifted { 1.0 } else { 0.0 }),
                 5211..=5213 => Ok(self.in_units(self.offsets.saved_shift()[axis(index, 5211)?])),
                 5214..=5219 => Ok(0.0),
-                5220 => Ok(f64::from(self.offsets.active + 1)),
+                5220 => Ok(f64::from(self.offsets.work.active + 1)),
                 5400 => Ok(f64::from(self.track.tool.unwrap_or(0))),
                 5401..=5403 => {
                     let row = self.tools.get(self.track.tool.unwrap_or(0));
@@ -162,7 +162,7 @@ impl Reader {
             "_rpm" => Ok(self.modes.speed.unwrap_or(0.0)),
             "_current_tool" => Ok(f64::from(self.track.tool.unwrap_or(0))),
             "_selected_tool" => Ok(f64::from(self.tools.selected.unwrap_or(0))),
-            "_coord_system" => Ok(f64::from(match self.offsets.active {
+            "_coord_system" => Ok(f64::from(match self.offsets.work.active {
                 index @ 0..=5 => 540 + 10 * index,
                 index => 585 + index,
             })),
@@ -200,7 +200,7 @@ impl Reader {
             Target::Number(index) => *index,
         };
         if let Some((offset, part)) = of_work_offset(index) {
-            let mut placed = self.offsets.placed(offset).unwrap_or_default();
+            let mut placed = self.offsets.work.placed(offset).unwrap_or_default();
             let number = value.unwrap_or(0.0);
             match part {
                 0..=2 => placed.origin[part] = number * self.unit(),
@@ -208,7 +208,7 @@ impl Reader {
                 _ if number == 0.0 => {}
                 _ => return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z")),
             }
-            return self.reframe(|reader| reader.offsets.place(offset, placed));
+            return self.reframe(|reader| reader.offsets.work.place(offset, placed));
         }
         let system = index >= 1000;
         if self.fanuc() && system {
