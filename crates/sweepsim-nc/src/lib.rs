@@ -50,7 +50,7 @@ pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
 pub use model::poses::ProgramPoses;
 pub use model::positions::ProgramPositions;
-pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
+pub use model::program::{Call, FeedMode, Note, NoteKind, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use model::stock::StockDescription;
 pub use model::times::{CORNER_DEVIATION, MoveClock, MoveTime, RAPID_SPEED, RAPID_TURN};

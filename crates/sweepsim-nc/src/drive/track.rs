@@ -14,7 +14,7 @@ use crate::machines::{Machine, Position, WorkFrame};
 use crate::model::assumption::AssumptionList;
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
-use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
+use crate::model::program::{FeedMode, NoteKind, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcProblem;
 use crate::text::numbers::rounded;
@@ -56,6 +56,8 @@ pub(crate) struct Track {
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
+    /// Whether something of the block was assumed, left out or ignored.
+    pub(super) doubted: bool,
     pub(super) strict: bool,
     pub(super) cutters: Cutters,
     pub(super) assumptions: AssumptionList,
@@ -103,6 +105,7 @@ impl Track {
             of_poses: false,
             contour: Contour::default(),
             text: 0,
+            doubted: false,
             strict: options.strict,
             cutters: Cutters::new(options),
             assumptions: AssumptionList::default(),
@@ -127,7 +130,25 @@ impl Track {
     }
 
     pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
+        let message = message.into();
+        if NoteKind::of(&message) != NoteKind::Read {
+            self.doubt();
+        }
         self.notes.add(self.place.line, message);
+    }
+
+    /// Something of this block was assumed, left out or ignored.
+    pub(super) fn doubt(&mut self) {
+        if !std::mem::replace(&mut self.doubted, true) {
+            self.program.understood = self.program.understood.saturating_sub(1);
+        }
+    }
+
+    /// A block is executed.
+    pub fn begin_block(&mut self) {
+        self.program.blocks += 1;
+        self.program.understood += 1;
+        self.doubted = false;
     }
 
     /// The position in the frame, if it is known.

@@ -165,6 +165,7 @@ impl Track {
             ..LeftOut::default()
         };
         self.left_out.entry(name.clone()).or_insert(left);
+        self.doubt();
         self.elsewhere = Some(Elsewhere { name, kept });
         self.xyz = [None; 3];
         self.joined = false;
@@ -264,6 +265,7 @@ impl Track {
 
     /// An assumption about the block that is read.
     pub fn assume(&mut self, assumption: Assumption) {
+        self.doubt();
         self.assumptions.add((self.place.file, self.place.line), assumption);
     }
 }

@@ -103,7 +103,51 @@ impl Default for ReadOptions {
     }
 }
 
+/// Whether the lengths of a program are in inches, by its first word that says so.
+fn is_in_inches(text: &str) -> Option<bool> {
+    const WORDS: [(&str, bool); 6] = [
+        ("G20", true),
+        ("G21", false),
+        ("G70", true),
+        ("G71", false),
+        ("G700", true),
+        ("G710", false),
+    ];
+    for line in text.lines() {
+        let upper = line.split(['(', ';']).next().unwrap_or("").trim().to_ascii_uppercase();
+        if upper.contains("BEGIN PGM") {
+            return Some(upper.ends_with("INCH"));
+        }
+        let said = upper.match_indices('G').find_map(|(at, _)| {
+            let digits = upper[at + 1..]
+                .bytes()
+                .take_while(|b| b.is_ascii_digit() || *b == b'.')
+                .count();
+            let code = &upper[at..=at + digits];
+            WORDS.iter().find(|(word, _)| *word == code)
+        });
+        if let Some((_, inch)) = said {
+            return Some(*inch);
+        }
+    }
+    None
+}
+
 impl ReadOptions {
+    /// Those given in a program's unit in millimetres.
+    pub(crate) fn in_mm(&self, text: &str) -> Self {
+        let unit = if is_in_inches(text).unwrap_or(self.inch) {
+            25.4
+        } else {
+            1.0
+        };
+        let mut options = self.clone();
+        options.in_program_units = false;
+        options.diameters.values_mut().for_each(|diameter| *diameter *= unit);
+        options.offsets.values_mut().flatten().for_each(|x| *x *= unit);
+        options
+    }
+
     /// Whether programs can be read so.
     pub(crate) fn check(&self) -> Result<(), NcError> {
         if self.arc_tolerance > 0.0 && self.arc_tolerance.is_finite() {

@@ -130,7 +130,9 @@ fn titles_and_tapes() {
         ("O1000 BRACKET\n", Some("BRACKET")),
         ("<BRACKET>\n", Some("BRACKET")),
         (":1000\n", Some("O1000")),
-        ("%\nO1000 (BRACKET)\n", Some("O1000")),
+        ("%\nO1000 (BRACKET)\n", Some("BRACKET")),
+        ("%\nO0000(PLATE REV-A)\n", Some("PLATE REV-A")),
+        ("O1000 ()\n", Some("O1000")),
         ("BRACKET OF 12 PARTS\n%\n", None),
     ] {
         let found = program(&format!("{head}{moves}%\nG1 X9\n"));

@@ -312,6 +312,7 @@ impl Reader {
             return Ok(Step::Next);
         }
         self.seen.begun = true;
+        self.track.begin_block();
         self.perform(block, here)
     }
 }

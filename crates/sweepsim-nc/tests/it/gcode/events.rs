@@ -29,7 +29,7 @@ fn events_in_order() {
             "2:12 OptionalStop",
         ]
     );
-    assert_eq!(found.title.as_deref(), Some("O7"));
+    assert_eq!(found.title.as_deref(), Some("BRACKET"));
     assert_eq!(found.units, Units::Mm);
     assert_eq!(program("G20 G0 X1 Y0 Z0").units, Units::Inch);
     // Compensated moves wait for the next one; what comes between them stays there.

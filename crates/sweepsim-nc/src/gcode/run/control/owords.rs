@@ -8,7 +8,7 @@ use crate::gcode::flow::keywords::{Keyword, Label, after_letter, keyword, label}
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::Values;
-use crate::gcode::syntax::words;
+use crate::gcode::syntax::{title, words};
 use crate::text::error::{Located, NcProblem};
 
 /// Arguments of a call, at most.
@@ -254,7 +254,8 @@ impl Reader {
             true => {
                 self.seen.numbered = true;
                 if self.track.program.title.is_none() {
-                    self.track.program.title = Some(name.to_string());
+                    let title = title::in_comment(&cursor.line[cursor.at..]);
+                    self.track.program.title = Some(title.unwrap_or_else(|| name.to_string()));
                 }
             }
             false => {
