@@ -105,7 +105,9 @@ impl Drafter<'_> {
         let mut said = vec![format!(
             "program: {moves} moves, {rapids} of them rapids, in {sections} {pieces}, written in {units}"
         )];
-        for (number, tool) in tools {
+        for &number in tools.keys() {
+            // What is guessed of it is said there.
+            let Some(tool) = self.described(number) else { continue };
             let name = tool
                 .name
                 .as_deref()

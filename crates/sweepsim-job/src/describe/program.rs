@@ -84,9 +84,12 @@ fn reading(text: &mut Description, program: &Program) {
     notes(text, NoteKind::Read, "note");
     notes(text, NoteKind::Ignored, "ignored");
     if program.blocks > 0 {
-        let odd = counted((program.blocks - program.understood) as u64, "block");
         let all = counted(program.blocks as u64, "block");
-        text.line("understood", &format!("all but {odd} of {all} that were executed"));
+        let odd = match program.blocks - program.understood {
+            0 => "all".to_owned(),
+            odd => format!("all but {odd}"),
+        };
+        text.line("understood", &format!("{odd} of {all} that were executed"));
     }
 }
 

@@ -72,7 +72,7 @@ pub(crate) enum Cutter {
 
 /// The kind whose solid is the envelope of a tool of another kind: threads and edges of taps and boring bars are within a cylinder, a probe ends in a ball.
 fn envelope(name: &str) -> Option<CutterKind> {
-    let lower = name.to_ascii_lowercase();
+    let lower = name.to_ascii_lowercase().replace(['-', '_'], " ");
     let has = |words: &[&str]| words.iter().any(|word| lower.contains(word));
     let taps = lower
         .split(|c: char| !c.is_ascii_alphabetic())
