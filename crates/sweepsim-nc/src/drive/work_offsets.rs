@@ -258,6 +258,11 @@ impl Track {
         true
     }
 
+    /// Whether what a program leaves to the control is an error.
+    pub fn strict(&self) -> bool {
+        self.strict
+    }
+
     /// Whether anything was assumed about blocks so far.
     pub fn assumes(&self) -> bool {
         !self.assumptions.is_empty()

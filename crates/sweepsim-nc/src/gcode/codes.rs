@@ -113,6 +113,8 @@ pub(crate) enum Code {
     TipControlByLetters,
     MacroCall,
     Dwell,
+    /// G31, G38.2 and their kin: a move up to where the part is.
+    Probe,
     /// G5: a spline, or a high-speed mode.
     SplineOrMode,
     /// G5.1: a spline, or a high-speed mode.
@@ -197,7 +199,7 @@ fn g(value: f64) -> Code {
         320 | 330 => Code::Motion(MotionMode::Thread),
         331 => Code::Motion(MotionMode::RigidTap),
         332..=339 => Code::Refused("threading is"),
-        310 | 350..=389 | 1360 => Code::Refused("probing is"),
+        310 | 350..=389 | 1360 => Code::Probe,
         400 => Code::CancelCompensation,
         410 | 420 => Code::Compensation {
             left: tenths == 410.0,
@@ -338,8 +340,8 @@ pub(crate) fn m(value: f64) -> Misc {
         73 => Misc::SaveModesForCall,
         96 | 198 => Misc::Refused("these subprograms are"),
         91 | 92 => Misc::Refused("machine coordinates by M code are"),
-        // Clamps, spindle orientation, overrides, pallets, digital and analog output.
-        10 | 11 | 19 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
+        // Clamps, spindle orientation, rigid tapping, overrides, pallets, digital and analog output.
+        10 | 11 | 19 | 29 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
         _ => Misc::Unknown,
     }
 }

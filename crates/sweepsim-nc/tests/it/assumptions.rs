@@ -210,3 +210,56 @@ fn registers_that_programs_set() {
         5.5
     );
 }
+
+#[test]
+fn probing_is_skipped() {
+    let text = "G54 G0 X0 Y0 Z5\nG65 P9810 Z2 F2000\nG65 P9811 X5\nG31 Z-3 F100\nG0 X1 Y1 Z5\nG1 Z0\n";
+    let program = read(text);
+    assert_eq!(tips(&program), [[0.0, 0.0, 5.0], [1.0, 1.0, 5.0], [1.0, 1.0, 0.0]]);
+    let what: Vec<&str> = program.assumptions.iter().map(|one| one.what.as_str()).collect();
+    assert_eq!(
+        what,
+        [
+            "O9810, a program of the machine",
+            "O9811, a program of the machine",
+            "what a probe finds"
+        ]
+    );
+    assert!(program.assumptions.iter().all(|one| !one.changes_verdict));
+    assert!(strict(text).contains("the subprogram O9810 is missing"));
+    assert!(strict("G0 X0 Y0 Z5\nG31 Z-3 F100\n").contains("probing is"));
+    // A program of the user is not the machine's.
+    assert!(gcode::read("G0 X0 Y0 Z5\nG65 P1234\n", &ReadOptions::default()).is_err());
+}
+
+#[test]
+fn branches_on_what_the_operator_sets() {
+    let text = "G0 X0 Y0 Z5\nIF [#501 EQ 1] GOTO 10\nG1 X1 F100\nIF [#5221 EQ 0] GOTO 20\nN10 G1 X2\nN20 G1 X3\nM30\n";
+    let program = read_with(text, |options| options.controller = Some(Controller::Fanuc));
+    assert_eq!(tips(&program), [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [3.0, 0.0, 5.0]]);
+    let said: Vec<(usize, &str)> = program
+        .assumptions
+        .iter()
+        .map(|one| (one.line, one.taken.as_str()))
+        .collect();
+    assert_eq!(
+        said,
+        [
+            (2, "empty, by which IF goes on; with another value it may jump"),
+            (4, "0, by which IF jumps; with another value it may go on")
+        ]
+    );
+    assert!(program.assumptions.iter().all(|one| one.changes_verdict));
+}
+
+#[test]
+fn a_thousand_problems_are_one_line_each() {
+    let blocks: String = (0..1000)
+        .map(|k| format!("G58 X{k} Y1\nM777\nG54 G0 X{k} Y0 Z5\nG1 Z-1 F100\n"))
+        .collect();
+    let program = read(&format!("G54 G0 X0 Y0 Z5\n{blocks}"));
+    assert!(only(&program).line == 2);
+    assert!(program.notes.len() <= 3, "{:?}", program.notes);
+    assert!(program.notes.iter().any(|note| note.message.contains("1000 times")));
+    assert_eq!((program.blocks, program.blocks - program.understood), (4001, 2000));
+}

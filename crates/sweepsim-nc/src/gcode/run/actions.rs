@@ -52,6 +52,7 @@ impl Reader {
                 }
             }
             Code::SetOffsets => self.set_offsets(block, words)?,
+            Code::Probe => self.probe(words.map(|word| word.is_some())),
             Code::LocalShift => {
                 if turns(block) {
                     return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
@@ -122,6 +123,14 @@ impl Reader {
             code => self.transform(code, block)?,
         }
         Ok(())
+    }
+
+    /// Probing goes to where the part is: nothing is cut, and where it ends only the machine knows.
+    fn probe(&mut self, axes: [bool; 3]) {
+        let taken = "left out; where the tool is then is known again from the next move that gives its axes";
+        self.track
+            .assume(Assumption::new("what a probe finds", taken, "a program without probing").harmless());
+        self.track.leave(axes);
     }
 
     fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {

@@ -220,6 +220,9 @@ impl Reader {
                     Step::Next
                 }
             };
+            if self.variables.asks() {
+                self.say_unknown(source.line(here.line), matches!(step, Step::Jump(_)));
+            }
             match step {
                 Step::Next => here.line += 1,
                 Step::Jump(to) => {

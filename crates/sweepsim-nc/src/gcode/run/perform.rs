@@ -181,7 +181,11 @@ impl Reader {
         }
         for &word in block.words().iter().filter(|word| word.letter == 'G') {
             let fail = |problem| Err((problem, word.span()));
-            match codes::g_in(word.value, block) {
+            let code = match codes::g_in(word.value, block) {
+                Code::Probe if self.track.strict() => Code::Refused("probing is"),
+                code => code,
+            };
+            match code {
                 Code::Motion(motion) => {
                     if plan.motion.replace(word).is_some() {
                         return fail(NcProblem::syntax(
@@ -266,6 +270,7 @@ impl Reader {
                 code @ (Code::Ignored(_)
                 | Code::Home { .. }
                 | Code::SetHome { .. }
+                | Code::Probe
                 | Code::SetOffsets
                 | Code::LocalShift
                 | Code::ShiftHere

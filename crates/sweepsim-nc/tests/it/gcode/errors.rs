@@ -239,7 +239,7 @@ fn forty_bad_programs() {
     let mut wrong = Vec::new();
     for (text, controller, message) in BAD {
         let mut options = ReadOptions::default();
-        options.controller = controller;
+        (options.controller, options.strict) = (controller, true);
         match gcode::read(text, &options) {
             Ok(_) => wrong.push(format!("{text:?} was read")),
             Err(error) if error.to_string() == message => {}

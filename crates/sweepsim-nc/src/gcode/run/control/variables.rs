@@ -1,5 +1,6 @@
 //! Numbered and named variables, and what the control keeps in them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::super::interpreter::Reader;
@@ -7,6 +8,7 @@ use crate::gcode::codes::MotionMode;
 use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::syntax::functions::Value;
+use crate::model::assumption::Assumption;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -20,6 +22,8 @@ pub(crate) struct Store {
     /// Named variables of this call: `#<name>`.
     pub named: BTreeMap<String, f64>,
     numbered: BTreeMap<u32, f64>,
+    /// Those of this block that only the machine or the operator knows.
+    asked: RefCell<Vec<u32>>,
     /// Those that begin with `_`: `#<_name>`.
     global: BTreeMap<String, f64>,
 }
@@ -30,8 +34,14 @@ impl Store {
             locals: [None; 34],
             named: BTreeMap::new(),
             numbered: numbered.clone(),
+            asked: RefCell::default(),
             global: BTreeMap::new(),
         }
+    }
+
+    /// Whether a variable was asked for that only the machine or the operator knows.
+    pub(crate) fn asks(&mut self) -> bool {
+        !self.asked.get_mut().is_empty()
     }
 
     pub(crate) fn get(&self, index: u32) -> Value {
@@ -236,6 +246,30 @@ impl Reader {
     }
 }
 
+impl Reader {
+    /// Says which variables of a line were not known, and which way it went.
+    pub(crate) fn say_unknown(&mut self, line: &str, jumps: bool) {
+        let mut asked = std::mem::take(&mut *self.variables.asked.borrow_mut());
+        asked.dedup();
+        let upper = line.to_ascii_uppercase();
+        let branches = upper.contains("IF") && upper.contains("GOTO");
+        for index in asked {
+            let value = if index < 1000 { "empty" } else { "0" };
+            let taken = match (branches, jumps) {
+                (true, true) => format!("{value}, by which IF jumps; with another value it may go on"),
+                (true, false) => format!("{value}, by which IF goes on; with another value it may jump"),
+                _ => value.to_owned(),
+            };
+            let settle = format!("#{index}=… in the program, or the control's variables");
+            self.track.assume(Assumption::new(
+                format!("#{index}, which the program does not set"),
+                taken,
+                settle,
+            ));
+        }
+    }
+}
+
 impl Variables for Reader {
     fn fanuc(&self) -> bool {
         self.rules.fanuc()
@@ -247,6 +281,14 @@ impl Variables for Reader {
         }
         if let Some(found) = self.system(index) {
             return found.map(Some);
+        }
+        // Common variables that stay from program to program, and those of the machine.
+        if !self.track.strict()
+            && index >= 500
+            && matches!(self.rules.controller, None | Some(Controller::Fanuc | Controller::Haas))
+        {
+            self.variables.asked.borrow_mut().push(index);
+            return Ok((index >= 1000).then_some(0.0));
         }
         match self.rules.controller {
             Some(Controller::Fanuc | Controller::Haas) if index >= 1000 => Err(NcProblem::unsupported(
