@@ -23,6 +23,7 @@ pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
 pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
 pub(crate) use driver::{Coordinates, Sense};
 pub(crate) use holes::{HoleCycle, HolePlace, HoleWork, Pecks, WayOut};
+pub(crate) use pockets::{Cycle, Pocket};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;
 pub(crate) use work_offsets::{Placed, WorkOffset, WorkOffsets};

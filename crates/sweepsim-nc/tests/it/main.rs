@@ -3,6 +3,7 @@
 mod accelerations;
 mod apt;
 mod assumptions;
+mod cam_klartext;
 mod contents;
 mod contours;
 mod fuzz;
@@ -17,6 +18,7 @@ mod limits;
 mod machines;
 mod packed;
 mod pieces;
+mod pockets;
 mod posted;
 mod programs;
 mod round_trips;

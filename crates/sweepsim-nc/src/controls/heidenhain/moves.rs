@@ -4,6 +4,7 @@ use super::interpreter::Reader;
 use super::line::{self, Line};
 use crate::drive::{CompensationSettings, Corners};
 use crate::machines::SHORTEST;
+use crate::model::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// The words of a move.
@@ -19,6 +20,8 @@ pub(super) struct MoveWords {
     pub(super) tool: [Option<f64>; 3],
     pub(super) rapid: bool,
     pub(super) machine: bool,
+    /// `M140 MB`: the way back along the tool, or all of it.
+    pub(super) retract: Option<Option<f64>>,
     /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
     pub(super) side: Option<Option<bool>>,
 }
@@ -27,7 +30,10 @@ const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Reader<'_> {
     fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
-        let mut words = MoveWords::default();
+        let mut words = MoveWords {
+            retract: (line.word(0) == "M140").then_some(None),
+            ..MoveWords::default()
+        };
         let mut index = 1;
         while index < line.tokens.len() {
             let token = &line.tokens[index];
@@ -61,6 +67,9 @@ impl Reader<'_> {
                 }
                 "FMAX" => words.rapid = true,
                 "FAUTO" | "F" => {}
+                "M140" => words.retract = words.retract.or(Some(None)),
+                "MB" | "MBMAX" => words.retract = Some(None),
+                name if name.starts_with("MB") => words.retract = Some(Some(value(self, &name[2..])? * self.unit())),
                 "DR+" => words.counter_clockwise = Some(true),
                 "DR-" => words.counter_clockwise = Some(false),
                 _ => {
@@ -139,6 +148,14 @@ impl Reader<'_> {
         } else if let Some(Some(left)) = words.side {
             self.compensate(left, &words, kind).map_err(whole)?;
         }
+        if let Some(way) = words.retract {
+            return self
+                .retract(
+                    way,
+                    words.rapid || !line.tokens.iter().any(|token| token.text.starts_with('F')),
+                )
+                .map_err(whole);
+        }
         if words.machine {
             self.track
                 .note("moves in machine coordinates are left out: the path breaks here");
@@ -147,6 +164,17 @@ impl Reader<'_> {
             return Ok(());
         }
         if abc != self.track.abc && self.frames.tilted() && !self.modes.tip_control {
+            let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
+            let axis = self.track.driver.axis(abc).map_err(whole)?;
+            let alone = !linear.contains(&true);
+            if alone && (0..3).all(|k| (axis[k] - normal[k]).abs() < 1e-6) {
+                // The axes turn the tool to the plane that there is.
+                if self.track.turn_to_angles(abc, Some(words.rapid)).map_err(whole)? {
+                    self.track
+                        .note("the rotary axes turn the tool to the plane: the path breaks here");
+                }
+                return Ok(());
+            }
             return Err(whole(NcProblem::unsupported(
                 "turning an axis in a tilted plane is",
                 "the plane would turn with it; expected PLANE RESET before it",
@@ -185,6 +213,25 @@ impl Reader<'_> {
             self.drill().map_err(whole)?;
         }
         Ok(())
+    }
+
+    /// `M140`: back along the tool, by so much or to the end of the travel.
+    fn retract(&mut self, way: Option<f64>, rapid: bool) -> Result<(), NcProblem> {
+        let (Some(way), Some(here)) = (way, self.track.known()) else {
+            if way.is_none() {
+                let taken = "the move is left out; where the tool is then is known again from the next moves";
+                let what = "the end of the travel along the tool (M140 MB MAX)";
+                self.track
+                    .assume(Assumption::new(what, taken, "M140 MB with a length").harmless());
+            }
+            self.track.leave([true; 3]);
+            return Ok(());
+        };
+        let axis = self.track.direction()?;
+        let at = self.track.frame().point(here);
+        let back = std::array::from_fn(|k| at[k] + way * axis[k]);
+        let target = self.track.frame().inverse_point(back).unwrap_or(here);
+        self.track.line(target, self.track.abc, rapid)
     }
 
     /// Where a block ends, in the frame; `None` if that is not known yet.

@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::cycles::hole_cycle;
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
+use super::milling::workpiece;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
-use crate::drive::{Coordinates, Corners};
+use crate::drive::{Coordinates, Corners, Cycle};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::text::error::{Located, NcProblem};
@@ -115,7 +116,15 @@ impl Reader<'_> {
                 let values: Vec<_> = values.into_iter().map(|value| value.map(number)).collect();
                 self.swivel(&values).map_err(here)?;
             }
-            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" => {}
+            "WORKPIECE" => {
+                let values = self.values(arguments)?;
+                self.track.program.stock = workpiece(&values, self.modes.unit());
+                if self.track.program.stock.is_none() {
+                    self.track
+                        .note("a WORKPIECE other than a BOX with absolute sides (112) is left out");
+                }
+            }
+            "CYCLE832" | "SETMS" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
                 let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
@@ -152,7 +161,9 @@ impl Reader<'_> {
             _ => (name, arguments, self.modal_word(span)),
         };
         let values = self.values(arguments)?;
-        if name.starts_with("CYCLE") {
+        if name.starts_with("CYCLE")
+            || matches!(name, "POCKET3" | "POCKET4" | "SLOT1" | "LONGHOLE" | "HOLES1" | "HOLES2")
+        {
             let numbers: Vec<Option<f64>> = values
                 .iter()
                 .map(|value| match value {
@@ -160,14 +171,18 @@ impl Reader<'_> {
                     _ => None,
                 })
                 .collect();
-            let cycle = hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?;
+            self.track.use_offset(&mut self.frames.work).map_err(here)?;
+            if self.places(name, &numbers).map_err(here)? || self.mill(name, &numbers).map_err(here)? {
+                return Ok(());
+            }
+            let cycle = Cycle::Hole(hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?);
             if modal {
                 self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
                 return Ok(());
             }
             return self
                 .track
-                .hole_here(&cycle, self.modes.plane, self.uncertain)
+                .cycle_here(&cycle, self.modes.plane, self.uncertain)
                 .map_err(here);
         }
         if !self.knows(name) {

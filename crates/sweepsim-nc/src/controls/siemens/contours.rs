@@ -41,7 +41,7 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool's edge, with its allowance.
-    fn cutter_radius(&mut self) -> Result<f64, NcProblem> {
+    pub(super) fn cutter_radius(&mut self) -> Result<f64, NcProblem> {
         let edge = self.modes.edge;
         if edge == 0 {
             return Ok(self.modes.allowance);

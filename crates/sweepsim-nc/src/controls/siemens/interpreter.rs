@@ -79,7 +79,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     program.controller = Some(Controller::Siemens);
     let comments = comments::read(text, program.units.in_mm());
     program.tools = comments.tools;
-    program.stock = comments.stock;
+    program.stock = program.stock.or(comments.stock);
     Ok(program)
 }
 

@@ -17,6 +17,7 @@ mod cycles;
 mod frames;
 mod interpreter;
 mod language;
+mod milling;
 mod moves;
 mod state;
 mod variables;

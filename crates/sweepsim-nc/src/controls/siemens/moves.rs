@@ -134,7 +134,7 @@ impl Reader<'_> {
                 Some((depth, _)) if depth != self.depth() => {}
                 Some((_, Modal::Cycle(cycle))) => self
                     .track
-                    .hole_here(&cycle, self.modes.plane, self.uncertain)
+                    .cycle_here(&cycle, self.modes.plane, self.uncertain)
                     .map_err(here)?,
                 Some((_, Modal::Program(name, values))) => self.pending = Some((name, values, 1)),
                 None => {}

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::language::expression::Value;
-use crate::drive::{Corners, HoleCycle, WorkOffset, WorkOffsets};
+use crate::drive::{Corners, Cycle, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
 use crate::model::event::Spindle;
 use crate::model::read_options::ReadOptions;
@@ -64,7 +64,7 @@ pub(super) struct Modes {
 /// What `MCALL` calls.
 #[derive(Clone, Debug)]
 pub(super) enum Modal {
-    Cycle(HoleCycle),
+    Cycle(Cycle),
     Program(String, Vec<Value>),
 }
 
