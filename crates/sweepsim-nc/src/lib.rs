@@ -45,7 +45,6 @@ pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,
 };
-pub use model::assumption::Assumption;
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
 pub use model::poses::ProgramPoses;
@@ -58,6 +57,7 @@ pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
 pub use read::{read_file, read_text};
 pub use sweepsim_motion::RotaryTable;
+pub use text::assumption::Assumption;
 pub use text::error::{NcError, NcProblem, TextPosition, shortened};
 pub use text::lines::end_lines_at_returns;
 pub use text::numbers::shortest;

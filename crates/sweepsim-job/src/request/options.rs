@@ -39,7 +39,7 @@ pub struct DialectOptions {
     pub strict: bool,
     /// What `D` means to cutter compensation, by number, in the program's unit.
     pub diameters: BTreeMap<u32, f64>,
-    /// Where work offsets are that the program does not set, by name (`G55`), in its unit from the zero of the first one.
+    /// Where work offsets are that the program does not set, by name (`G55`), in its unit from the zero of the first.
     pub offsets: BTreeMap<String, [f64; 3]>,
 }
 

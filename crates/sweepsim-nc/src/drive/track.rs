@@ -6,16 +6,15 @@ use nalgebra::Vector3;
 use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace};
-use super::cutters::Cutters;
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
-use super::work_offsets::{Elsewhere, LeftOut};
+use super::unknowns::{Cutters, Elsewhere, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
-use crate::model::assumption::AssumptionList;
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
-use crate::model::program::{FeedMode, NoteKind, NoteList, Program, ProgramPose};
+use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
+use crate::text::assumption::AssumptionList;
 use crate::text::error::NcProblem;
 use crate::text::numbers::rounded;
 
@@ -127,28 +126,6 @@ impl Track {
         track.direct = Some([0.0, 0.0, 1.0]);
         track.of_poses = true;
         track
-    }
-
-    pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
-        let message = message.into();
-        if NoteKind::of(&message) != NoteKind::Read {
-            self.doubt();
-        }
-        self.notes.add(self.place.line, message);
-    }
-
-    /// Something of this block was assumed, left out or ignored.
-    pub(super) fn doubt(&mut self) {
-        if !std::mem::replace(&mut self.doubted, true) {
-            self.program.understood = self.program.understood.saturating_sub(1);
-        }
-    }
-
-    /// A block is executed.
-    pub fn begin_block(&mut self) {
-        self.program.blocks += 1;
-        self.program.understood += 1;
-        self.doubted = false;
     }
 
     /// The position in the frame, if it is known.

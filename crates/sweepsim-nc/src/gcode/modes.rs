@@ -19,6 +19,17 @@ pub(crate) struct CycleWords {
     pub initial: Option<f64>,
 }
 
+/// What has switched tip control on.
+#[derive(Default)]
+pub(crate) struct TipControl {
+    /// The machine's kinematics (M428).
+    pub kinematics: bool,
+    /// The length offset (G43.4).
+    pub by_length: bool,
+    /// G43.5: tool vectors.
+    pub vectors: bool,
+}
+
 /// Modal state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Modes {

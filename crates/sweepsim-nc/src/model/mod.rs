@@ -1,6 +1,5 @@
 //! What reading a program takes and gives.
 
-pub(crate) mod assumption;
 pub(crate) mod event;
 pub(crate) mod kept_arcs;
 pub(crate) mod names;

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::machines::{Machine, Position};
-use crate::model::assumption::Assumption;
 use crate::model::event::Event;
 use crate::model::names::Format;
 pub use crate::model::pose::{FeedMode, ProgramPose};
@@ -14,6 +13,7 @@ use crate::model::positions::ProgramPositions;
 use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
+use crate::text::assumption::Assumption;
 
 /// The unit of length of a program's words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

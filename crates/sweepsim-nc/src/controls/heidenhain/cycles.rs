@@ -4,8 +4,8 @@ use super::interpreter::Reader;
 use super::line::Line;
 use super::planes::is_frame_cycle;
 use crate::drive::{Cycle, HoleCycle, HoleWork, Pecks, Pocket, WayOut};
-use crate::model::assumption::Assumption;
 use crate::model::event::EventKind;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// By how much cycle 202 leaves the wall, in mm.

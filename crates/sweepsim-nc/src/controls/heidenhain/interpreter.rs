@@ -9,12 +9,12 @@ use super::routine::Routine;
 use super::values::Parameters;
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{Cycle, ProgramPlace, Sense, Track};
-use crate::model::assumption::Assumption;
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::model::stock::StockDescription;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcError, NcProblem};
 use crate::tools::comments;
 

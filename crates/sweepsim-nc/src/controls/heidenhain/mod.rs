@@ -11,6 +11,7 @@
 
 mod arcs;
 mod calls;
+mod compensation;
 mod cycles;
 mod frames;
 mod interpreter;

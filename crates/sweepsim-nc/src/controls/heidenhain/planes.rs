@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::interpreter::Reader;
 use super::line::{self, Line};
 use crate::machines::WorkFrame;
-use crate::model::assumption::Assumption;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// The cycles of frames, by their first part (`7.1` is part 1 of 7).

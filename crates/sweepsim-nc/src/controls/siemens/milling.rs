@@ -7,8 +7,8 @@ use super::interpreter::Reader;
 use super::language::expression::Value;
 use super::state::Modal;
 use crate::drive::{Cycle, Pocket};
-use crate::model::assumption::Assumption;
 use crate::model::stock::StockDescription;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// The most places of a pattern.

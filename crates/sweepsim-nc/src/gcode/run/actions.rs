@@ -7,8 +7,8 @@ use crate::gcode::offsets::{EXTENDED, known};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::machines::WorkFrame;
-use crate::model::assumption::Assumption;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// Whether a block has a rotary word other than 0.

@@ -9,17 +9,6 @@ use crate::gcode::syntax::block::Block;
 use crate::machines::{SHORTEST, WorkFrame};
 use crate::text::error::NcProblem;
 
-/// What has switched tip control on.
-#[derive(Default)]
-pub(crate) struct TipControl {
-    /// The machine's kinematics (M428).
-    pub kinematics: bool,
-    /// The length offset (G43.4).
-    pub by_length: bool,
-    /// G43.5: tool vectors.
-    pub vectors: bool,
-}
-
 impl Reader {
     /// Whether coordinates are those of the tip, outside of tilted planes as well.
     fn tip_control(&self) -> bool {

@@ -39,14 +39,15 @@ pub(super) fn read(comment: &str, unit: f64) -> Option<Described> {
         return None;
     }
     let mut tool = ToolDescription::default();
-    let angle = words.take_angle(family);
+    let angle = words.take_angle(matches!(
+        family,
+        Some(Family::Spot | Family::Centre | Family::Chamfer | Family::Drill)
+    ));
     let corner = words.take_corner();
     let lengths = words.take_lengths();
     let size = sizes::size(&words, family, unit, number.is_none())?;
     // A number alone is no tool: an operation may have one.
-    let Some(family) = family.or(size.labelled.then_some(Family::Unknown)) else {
-        return None;
-    };
+    let family = family.or(size.labelled.then_some(Family::Unknown))?;
     tool.diameter = Some(size.mm);
     tool.notes.extend(size.note);
     tool.flute_length = lengths.map(|length| length.mm(unit));

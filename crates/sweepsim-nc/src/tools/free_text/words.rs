@@ -1,7 +1,5 @@
 //! The words and numbers of a comment.
 
-use super::kinds::Family;
-
 /// A piece of a comment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Piece {
@@ -164,12 +162,8 @@ impl Words {
         Some(number)
     }
 
-    /// An angle in degrees, and takes it away.
-    pub fn take_angle(&mut self, family: Option<Family>) -> Option<f64> {
-        let pointed = matches!(
-            family,
-            Some(Family::Spot | Family::Centre | Family::Chamfer | Family::Drill)
-        );
+    /// An angle in degrees, and takes it away. `pointed`: the tool ends in a cone, whose angle stands behind its size.
+    pub fn take_angle(&mut self, pointed: bool) -> Option<f64> {
         for at in 0..self.pieces.len() {
             let Some(number) = self.number(at) else { continue };
             let degrees = matches!(self.word(at + 1), Some(word) if word.starts_with("DEG"))

@@ -7,7 +7,6 @@ use super::variables::Locals;
 use crate::gcode::flow::keywords::{Keyword, Label};
 use crate::gcode::modes::Modes;
 use crate::gcode::syntax::block::Block;
-use crate::model::assumption::Assumption;
 use crate::model::program::Call;
 use crate::text::error::NcProblem;
 
@@ -254,35 +253,6 @@ impl Reader {
             ..CallLevel::default()
         };
         self.enter(level, start, here)
-    }
-
-    /// A call of a program that is missing: those from O9000 on are of the machine's builder, or of its probe.
-    fn without_macro(&mut self, number: u32, block: &Block, problem: NcProblem) -> Result<Step, NcProblem> {
-        if self.track.strict() || !(9000..=9999).contains(&number) {
-            return Err(problem);
-        }
-        // Renishaw's begin with 98: O9810 is a positioning move, the others end where they began.
-        let probes = (9800..=9899).contains(&number);
-        let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let what = format!("O{number}, a program of the machine");
-        let settle = format!("the file O{number} beside the program");
-        let taken = match (number, probes) {
-            (9810, _) => "a positioning move of the probe",
-            (_, true) => "a cycle of the probe, which cuts nothing and ends where it began: left out",
-            _ => "left out; where the tool is then is known again from the next moves",
-        };
-        let assumption = Assumption::new(what, taken, settle);
-        self.track
-            .assume(if probes { assumption.harmless() } else { assumption });
-        if !probes {
-            self.track.leave([true; 3]);
-        } else if number == 9810 {
-            for k in 0..3 {
-                self.track.xyz[k] = words[k].filter(|_| self.modes.absolute).or(self.track.xyz[k]);
-            }
-            self.track.joined = false;
-        }
-        Ok(Step::Next)
     }
 
     /// G66: calls the macro after each block that moves, as G65 does, until G67. Moves within the macro do not call it again.

@@ -8,8 +8,8 @@ use crate::gcode::codes::MotionMode;
 use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::syntax::functions::Value;
-use crate::model::assumption::Assumption;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// `#1` to `#33`, which calls save and restore.

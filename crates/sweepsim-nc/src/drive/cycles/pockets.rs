@@ -5,11 +5,11 @@
 
 use std::f64::consts::TAU;
 
-use super::circular_arc::Arc;
-use super::contour::{ArcPlane, Bend};
 use super::holes::{HoleCycle, HolePlace};
-use super::track::Track;
-use crate::model::assumption::Assumption;
+use crate::drive::circular_arc::Arc;
+use crate::drive::contour::{ArcPlane, Bend};
+use crate::drive::track::Track;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// The most rings and levels of a pocket.

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::driver::Coordinates;
-use super::track::Track;
+use crate::drive::driver::Coordinates;
+use crate::drive::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
 

@@ -4,9 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use super::circular_arc::Arc;
-use super::contour::ArcPlane;
-use super::track::Track;
+use crate::drive::circular_arc::Arc;
+use crate::drive::contour::ArcPlane;
+use crate::drive::track::Track;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 

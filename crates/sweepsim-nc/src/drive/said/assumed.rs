@@ -1,131 +1,13 @@
-//! Work offsets of all controls: in which frame the coordinates of a program are, and where that is.
-//!
-//! The moves of a program have one frame: that of the machine, where the program or the control's variables set the offsets in use, else the part's, which is that of
-//! the first offset that nothing sets. Another such offset is somewhere that only the machine knows: moves in it are left out, and said to be.
+//! What is assumed while a program is read: moves in offsets that only the machine knows, coordinates, registers.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
-use super::track::Track;
-use crate::machines::WorkFrame;
-use crate::model::assumption::Assumption;
-use crate::model::read_options::ReadOptions;
+use crate::drive::track::Track;
+use crate::drive::unknowns::{Elsewhere, Frame, LeftOut, WorkOffsets};
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
-
-/// The number of a work offset, by the control's own count.
-pub(crate) type WorkOffset = u32;
-
-/// The place of a work offset.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Placed {
-    pub origin: [f64; 3],
-    /// Degrees about Z.
-    pub turn: f64,
-}
-
-impl Placed {
-    pub fn frame(&self) -> WorkFrame {
-        WorkFrame::shifted(self.origin).then(&WorkFrame::turned(2, self.turn))
-    }
-}
-
-/// The frame of moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Frame {
-    Machine,
-    /// The part's: that of an offset that nothing sets, once one was used.
-    Part(Option<WorkOffset>),
-}
-
-/// The work offsets of a control.
-#[derive(Clone, Debug)]
-pub(crate) struct WorkOffsets {
-    /// The active one.
-    pub active: WorkOffset,
-    placed: BTreeMap<WorkOffset, Placed>,
-    /// Those that the user places in the frame of the part.
-    given: BTreeSet<WorkOffset>,
-    /// The frame of the moves so far.
-    used: Option<Frame>,
-    name: fn(WorkOffset) -> String,
-}
-
-impl WorkOffsets {
-    /// Those that the user places, of numbers below `most`.
-    pub fn new(name: fn(WorkOffset) -> String, most: WorkOffset, options: &ReadOptions) -> Self {
-        let mut offsets = Self {
-            active: 0,
-            placed: BTreeMap::new(),
-            given: BTreeSet::new(),
-            used: None,
-            name,
-        };
-        for number in (0..most).filter(|_| !options.offsets.is_empty()) {
-            if let Some(origin) = options.offsets.get(&name(number).replace(' ', "")) {
-                offsets.given.insert(number);
-                offsets.placed.insert(
-                    number,
-                    Placed {
-                        origin: *origin,
-                        turn: 0.0,
-                    },
-                );
-            }
-        }
-        offsets
-    }
-
-    pub fn placed(&self, number: WorkOffset) -> Option<Placed> {
-        self.placed.get(&number).copied()
-    }
-
-    pub fn place(&mut self, number: WorkOffset, placed: Placed) {
-        self.given.remove(&number);
-        self.placed.insert(number, placed);
-    }
-
-    /// Whether the machine knows where the active one is.
-    pub fn is_placed(&self) -> bool {
-        self.placed.contains_key(&self.active) && !self.given.contains(&self.active)
-    }
-
-    /// The frame of the active one.
-    pub fn frame(&self) -> WorkFrame {
-        self.placed(self.active).unwrap_or_default().frame()
-    }
-
-    fn active_frame(&self) -> Frame {
-        match (self.given.contains(&self.active), self.is_placed()) {
-            (true, _) => Frame::Part(None),
-            (_, true) => Frame::Machine,
-            _ => Frame::Part(Some(self.active)),
-        }
-    }
-
-    fn describe(&self, frame: Frame) -> String {
-        match frame {
-            Frame::Part(Some(number)) => format!("a move in {}, which the program does not set,", (self.name)(number)),
-            _ => "one in an offset that it sets".into(),
-        }
-    }
-}
-
-/// An offset that only the machine knows, while moves are in it.
-#[derive(Clone, Debug)]
-pub(super) struct Elsewhere {
-    pub(super) name: String,
-    /// Where the tool is in the frame of the other moves, along axes that have not moved since.
-    pub(super) kept: [Option<f64>; 3],
-}
-
-/// What was left out in such an offset.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LeftOut {
-    first: (usize, usize),
-    /// The last one, and whether it is a rapid.
-    last: ((usize, usize), bool),
-    rapids: usize,
-    feeds: usize,
-}
+use crate::text::numbers::rounded;
+use crate::tools::comments;
 
 impl Track {
     /// Before a move in the active work offset: it must be known relative to those before, or the move is left out.
@@ -193,7 +75,7 @@ impl Track {
     }
 
     /// Counts a move that is left out, if the moves are elsewhere now.
-    pub(super) fn leaves_out(&mut self, rapid: bool) -> bool {
+    pub(in crate::drive) fn leaves_out(&mut self, rapid: bool) -> bool {
         let Some(elsewhere) = &self.elsewhere else { return false };
         let place = (self.place.file, self.place.line);
         if let Some(left) = self.left_out.get_mut(&elsewhere.name) {
@@ -211,7 +93,7 @@ impl Track {
     }
 
     /// What is assumed of offsets that only the machine knows.
-    pub(super) fn assume_offsets(&mut self) {
+    pub(in crate::drive) fn assume_offsets(&mut self) {
         for (name, left) in std::mem::take(&mut self.left_out) {
             let key = name.replace(' ', "");
             let what = format!("the place of {name}");
@@ -272,5 +154,40 @@ impl Track {
     pub fn assume(&mut self, assumption: Assumption) {
         self.doubt();
         self.assumptions.add((self.place.file, self.place.line), assumption);
+    }
+
+    /// Takes the text of the program, whose comments may describe tools.
+    pub fn describe_tools(&mut self, text: &Rc<String>) {
+        self.cutters.comments = Some(Rc::clone(text));
+    }
+
+    /// The diameter of the tool in the spindle, in place of a register that nothing sets: an assumption. `wear`: that it is 0 instead, since a contour cannot be
+    /// offset by the tool's radius.
+    pub fn assume_diameter(&mut self, register: &str, option: &str, unit: f64, wear: bool) -> Option<f64> {
+        let tool = self.tool.filter(|_| !self.strict)?;
+        if let Some(text) = self.cutters.comments.take() {
+            for (number, tool) in comments::read(&text, unit).tools {
+                if let Some(diameter) = tool.diameter {
+                    self.cutters.known.entry(number).or_insert(diameter);
+                }
+            }
+        }
+        let diameter = *self.cutters.known.get(&tool)?;
+        let [size, radius] = [diameter, 0.5 * diameter].map(|mm| rounded(mm / unit));
+        let (taken, other) = match wear {
+            false => (
+                format!("the size of tool {tool}, {size} across"),
+                format!("0 if it is only the tool's wear: the tool is then {radius} nearer to the contour"),
+            ),
+            true => (
+                format!(
+                    "0, the tool's wear: with the size of tool {tool}, {size} across, the contour cannot be offset"
+                ),
+                "the tool's diameter".to_owned(),
+            ),
+        };
+        let settle = format!("--diameters {option}=… (in a job: diameters), {other}");
+        self.assume(Assumption::new(register, taken, settle));
+        Some(if wear { 0.0 } else { diameter })
     }
 }
