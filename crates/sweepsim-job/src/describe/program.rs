@@ -112,6 +112,7 @@ fn language(program: &Program) -> String {
             Some(Controller::Fanuc) => "G-code of Fanuc",
             Some(Controller::Haas) => "G-code of Haas",
             Some(Controller::Grbl) => "G-code of Grbl",
+            Some(Controller::Okuma) => "G-code of Okuma",
             _ => "G-code, of any control",
         },
     };

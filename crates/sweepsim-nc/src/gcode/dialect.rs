@@ -39,8 +39,24 @@ impl Rules {
     }
 }
 
+/// Whether a text is a program of an Okuma: `$BRACKET.MIN%` at its head, or `G15 H` for its work offset.
+fn is_okuma(text: &str) -> bool {
+    let head = text.lines().map(str::trim).find(|line| !line.is_empty());
+    head.is_some_and(|head| okuma_title(head).is_some()) || text.contains("G15 H") || text.contains("G15H")
+}
+
+/// The name in the head of a program of an Okuma.
+pub(crate) fn okuma_title(line: &str) -> Option<&str> {
+    let name = line.trim().strip_prefix('$')?.strip_suffix('%')?;
+    let (title, kind) = name.rsplit_once('.')?;
+    (kind.eq_ignore_ascii_case("MIN") || kind.eq_ignore_ascii_case("SUB")).then_some(title)
+}
+
 /// The control, if the text uses subprograms, branches or settings of only one kind of controls.
 fn of(text: &str) -> Option<Controller> {
+    if is_okuma(text) {
+        return Some(Controller::Okuma);
+    }
     // Without variables, it does not matter.
     let variables = text.contains('#');
     if !variables && !text.contains('$') {

@@ -25,12 +25,14 @@ mod dialect;
 mod flow;
 mod modes;
 mod offsets;
+mod okuma;
 mod run;
 mod syntax;
 
 use std::path::Path;
 use std::rc::Rc;
 
+pub(crate) use self::dialect::okuma_title;
 use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;

@@ -51,6 +51,8 @@ pub(crate) struct Modes {
     pub curve_tangent: Option<[f64; 2]>,
     /// G99: cycles retract to their plane R.
     pub retract_to_plane: bool,
+    /// Okuma's G71 Z, in mm: the level that takes the place of where a cycle began.
+    pub return_level: Option<f64>,
     pub cycle: CycleWords,
     /// G16.
     pub polar: bool,

@@ -7,8 +7,10 @@ use crate::text::error::NcProblem;
 
 /// Where G54.1 P1 and its kin begin: 0 … 8 are G54 … G59.3, 100 + P is G54.1 P.
 pub(crate) const EXTENDED: WorkOffset = 100;
+/// Where those of Okuma begin: `G15 H1`.
+pub(crate) const OKUMA: WorkOffset = EXTENDED + 1000;
 /// Above all of them.
-const MOST: WorkOffset = EXTENDED + 1000;
+const MOST: WorkOffset = OKUMA + 1000;
 
 /// The work offsets, and the shifts on top of them. Millimetres.
 #[derive(Clone, Debug)]
@@ -39,6 +41,7 @@ pub(crate) fn name(index: WorkOffset) -> String {
     match index {
         0..=5 => format!("G{}", 54 + index),
         6..=8 => format!("G59.{}", index - 5),
+        OKUMA.. => format!("G15 H{}", index - OKUMA),
         _ => format!("G54.1 P{}", index.saturating_sub(EXTENDED)),
     }
 }

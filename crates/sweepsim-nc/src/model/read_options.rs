@@ -187,11 +187,13 @@ pub enum Controller {
     Heidenhain,
     /// Grbl and TinyG.
     Grbl,
+    /// Okuma OSP, milling.
+    Okuma,
 }
 
 impl Controller {
     /// The names that [`named`](Self::named) knows.
-    pub const NAMES: [&str; 6] = ["linuxcnc", "fanuc", "haas", "siemens", "heidenhain", "grbl"];
+    pub const NAMES: [&str; 7] = ["linuxcnc", "fanuc", "haas", "siemens", "heidenhain", "grbl", "okuma"];
 
     /// Its name.
     ///
@@ -207,6 +209,7 @@ impl Controller {
             Self::Siemens => "siemens",
             Self::Heidenhain => "heidenhain",
             Self::Grbl => "grbl",
+            Self::Okuma => "okuma",
         }
     }
 
@@ -226,6 +229,7 @@ impl Controller {
             "siemens" | "sinumerik" | "840d" => Self::Siemens,
             "heidenhain" | "klartext" => Self::Heidenhain,
             "grbl" | "tinyg" => Self::Grbl,
+            "okuma" | "osp" => Self::Okuma,
             _ => return None,
         })
     }

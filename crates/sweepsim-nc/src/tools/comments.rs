@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 
 use super::free_text::{self, Described};
 use super::fusion::kind_of;
+use crate::model::program::Program;
 use crate::model::stock::StockDescription;
 use crate::model::tool::{CutterKind, ToolDescription};
 
@@ -19,6 +20,25 @@ use crate::model::tool::{CutterKind, ToolDescription};
 pub(crate) struct Comments {
     pub tools: BTreeMap<u32, ToolDescription>,
     pub stock: Option<StockDescription>,
+}
+
+/// Describes tools by their names, where nothing else does.
+pub(crate) fn name_tools(program: &mut Program, names: &BTreeMap<String, u32>) {
+    let unit = program.units.in_mm();
+    for (name, number) in names {
+        if let Some(tool) = of_name(name.trim_matches('"'), unit) {
+            program.tools.entry(*number).or_insert(tool);
+        }
+    }
+}
+
+/// A tool that has a name instead of a comment: `MILL_D10_R0.5`.
+fn of_name(name: &str, unit: f64) -> Option<ToolDescription> {
+    let tool = free_text::read(&format!("T0 {name}"), unit)?.tool;
+    Some(ToolDescription {
+        name: Some(name.to_owned()),
+        ..tool
+    })
 }
 
 /// How many lines behind a change of tools a comment without a number may be about that tool.

@@ -16,6 +16,7 @@ mod klartext_cycles;
 mod level_arcs;
 mod limits;
 mod machines;
+mod okuma;
 mod packed;
 mod pieces;
 mod pockets;

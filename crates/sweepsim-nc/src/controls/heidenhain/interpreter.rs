@@ -119,8 +119,10 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         }
     }
     run::run(&mut reader, text, options)?;
+    let names = std::mem::take(&mut reader.tools);
     let mut program = reader.finish();
     program.tools = described;
+    comments::name_tools(&mut program, &names);
     Ok(program)
 }
 

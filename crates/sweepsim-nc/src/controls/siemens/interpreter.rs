@@ -74,11 +74,13 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
     reader.track.describe_tools(text);
     run::run(&mut reader, text, options)?;
+    let names = std::mem::take(&mut reader.modes.tools);
     let mut program = reader.track.finish();
     program.format = Some(Format::Gcode);
     program.controller = Some(Controller::Siemens);
     let comments = comments::read(text, program.units.in_mm());
     program.tools = comments.tools;
+    comments::name_tools(&mut program, &names);
     program.stock = program.stock.or(comments.stock);
     Ok(program)
 }

@@ -52,6 +52,7 @@ impl Reader {
                 }
             }
             Code::SetOffsets => self.set_offsets(block, words)?,
+            Code::ReturnLevel => self.modes.return_level = words[2],
             Code::Probe => self.probe(words.map(|word| word.is_some())),
             Code::LocalShift => {
                 if turns(block) {

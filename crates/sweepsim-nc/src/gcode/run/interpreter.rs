@@ -16,12 +16,13 @@ use crate::gcode::flow::keywords::{after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::modes::{Modes, TipControl};
 use crate::gcode::offsets::Offsets;
+use crate::gcode::okuma;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
-use crate::model::read_options::ReadOptions;
+use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{Located, NcError, NcProblem};
 
 /// The most problems after the first one.
@@ -287,6 +288,13 @@ impl Reader {
         if line.as_bytes().get(cursor.at) == Some(&b'/') && self.rules.block_delete {
             self.track.note("optional blocks (`/`) are skipped");
             return Ok(Step::Next);
+        }
+        if let Some(call) = okuma::call(line).filter(|_| self.rules.controller == Some(Controller::Okuma)) {
+            self.track.begin_block();
+            return self
+                .call_okuma(call)
+                .map(|()| Step::Next)
+                .map_err(|problem| (problem, 0..line.len()));
         }
         if let Some(cursor) = after_letter(line) {
             self.seen.begun = true;

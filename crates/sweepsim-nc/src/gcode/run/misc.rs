@@ -2,9 +2,11 @@
 
 use super::interpreter::{Reader, Step};
 use crate::gcode::codes::{self, Misc, SpindleTurning};
+use crate::gcode::okuma_title;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
+use crate::model::read_options::Controller;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader {
@@ -33,9 +35,12 @@ impl Reader {
             return Ok(Step::Next);
         }
         let mut step = Step::Next;
+        let okuma = self.rules.controller == Some(Controller::Okuma);
         for &word in block.words().iter().filter(|word| word.letter == 'M') {
             let at = |problem| (problem, word.span());
             match codes::m(word.value) {
+                // To the level of G71, or to R.
+                _ if okuma && matches!(word.value, 53.0 | 54.0) => self.modes.retract_to_plane = word.value == 54.0,
                 Misc::Harmless => {}
                 Misc::End => step = Step::End,
                 Misc::Stop => self.track.event(EventKind::Stop).map_err(at)?,
@@ -104,6 +109,10 @@ impl Reader {
 
     /// Settings of Grbl and TinyG.
     pub(super) fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
+        if let Some(title) = okuma_title(line) {
+            self.track.program.title.get_or_insert_with(|| title.to_owned());
+            return Ok(Step::Next);
+        }
         let upper = line.trim().to_ascii_uppercase();
         if upper.starts_with("$H") {
             self.track

@@ -17,6 +17,7 @@ struct Plan {
     machine_coordinates: bool,
     motion: Option<Word>,
     dwell: bool,
+    changes_tool: bool,
     length: Option<(Code, Word)>,
     macro_call: Option<Word>,
 }
@@ -52,6 +53,10 @@ impl Reader {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
         }
         let mut step = self.misc(block)?;
+        if plan.changes_tool {
+            self.change_tool(self.tools.selected)
+                .map_err(|problem| (problem, block.all()))?;
+        }
         (self.track.feed, self.track.feed_mode) = (self.modes.feed, self.modes.feed_mode);
         self.track.exact_stop = self.modes.exact_stop || self.modes.stops_here;
         let whole = |problem| (problem, block.all());
@@ -181,7 +186,7 @@ impl Reader {
         }
         for &word in block.words().iter().filter(|word| word.letter == 'G') {
             let fail = |problem| Err((problem, word.span()));
-            let code = match codes::g_in(word.value, block) {
+            let code = match codes::g_in(word.value, block, self.rules.controller) {
                 Code::Probe if self.track.strict() => Code::Refused("probing is"),
                 code => code,
             };
@@ -229,6 +234,7 @@ impl Reader {
                 Code::Absolute(absolute) => self.modes.absolute = absolute,
                 Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
                 Code::Feed(mode) => self.modes.feed_mode = mode,
+                Code::ChangeTool => plan.changes_tool = true,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
                 Code::TipControl(on) => (self.tip.by_length, self.tip.vectors) = (on, false),
                 Code::TipVectors => (self.tip.by_length, self.tip.vectors) = (true, true),
@@ -271,6 +277,7 @@ impl Reader {
                 | Code::Home { .. }
                 | Code::SetHome { .. }
                 | Code::Probe
+                | Code::ReturnLevel
                 | Code::SetOffsets
                 | Code::LocalShift
                 | Code::ShiftHere

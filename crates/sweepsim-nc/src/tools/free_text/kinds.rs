@@ -61,6 +61,8 @@ pub(super) fn family(words: &Words) -> Option<Family> {
             "DEBUR",
             "FASEN",
             "GRAVUR",
+            "ENTGRAT",
+            "ENTFR",
         ]) || any(&["SINK"])
             || any(&["V"]) && any(&["BIT", "CUTTER"]) =>
         {
@@ -72,12 +74,16 @@ pub(super) fn family(words: &Words) -> Option<Family> {
         () if starts(&["BALL", "SPHERICAL", "KUGEL"]) || any(&["BN", "BEM", "BNEM"]) => Family::Ball,
         () if starts(&["BULL", "TORUS", "TOROID"]) => Family::Bull,
         () if any(&["FACE", "SHELL"]) && mill
-            || starts(&["FACEMILL", "SHELLMILL", "FLYCUT", "PLANFR", "MESSERKOPF"]) =>
+            || starts(&["FACEMILL", "SHELLMILL", "FLYCUT", "PLANFR", "PLAN", "MESSERKOPF"]) =>
         {
             Family::Face
         }
         () if drill && !any(&["SLOT"]) => Family::Drill,
-        () if mill || drill || any(&["FLAT", "SQUARE", "SLOT", "CBORE", "COUNTERBORE", "ROUGHER", "FACE"]) => {
+        () if mill
+            || drill
+            || starts(&["SCHAFT"])
+            || any(&["FLAT", "SQUARE", "SLOT", "CBORE", "COUNTERBORE", "ROUGHER", "FACE"]) =>
+        {
             Family::Mill
         }
         () if starts(&["FLUTE"]) => Family::Mill,

@@ -98,6 +98,10 @@ fn millimetre_programs() {
             ("T11 DIA 63 FACE MILL 5 INSERTS", (Some(11), FLAT, 63.0, None)),
             ("T12 Ø16 ENDMILL Z4", (Some(12), FLAT, 16.0, None)),
             ("#3 D=10 - ZMIN=-4.5 - flat end mill", (None, FLAT, 10.0, None)),
+            ("T0 SCHAFT_D12_N_AP30", (Some(0), FLAT, 12.0, None)),
+            ("T0 PLAN_D50_N_AP4", (Some(0), FLAT, 50.0, None)),
+            ("T0 ENTFRAESER_D8_N_90GRAD", (Some(0), "chamfer mill", 8.0, Some(45.0))),
+            ("T0 BOHRER_D3.3_VHM", (Some(0), "drill", 3.3, None)),
             ("T17 MILL-8 DM=8 CR=0 TL=357", (Some(17), FLAT, 8.0, None)),
         ],
     );

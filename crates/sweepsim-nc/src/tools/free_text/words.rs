@@ -166,7 +166,7 @@ impl Words {
     pub fn take_angle(&mut self, pointed: bool) -> Option<f64> {
         for at in 0..self.pieces.len() {
             let Some(number) = self.number(at) else { continue };
-            let degrees = matches!(self.word(at + 1), Some(word) if word.starts_with("DEG"))
+            let degrees = matches!(self.word(at + 1), Some(word) if word.starts_with("DEG") || word == "GRAD")
                 || self.pieces.get(at + 1) == Some(&Piece::Sign('°'));
             let named = at > 0 && self.labels(at, &["ANGLE", "ANG", "TAPER", "SIG", "POINT"]);
             let across = pointed
@@ -212,7 +212,7 @@ impl Words {
         for at in 0..self.pieces.len() {
             let Some(number) = self.number(at) else { continue };
             let after = self.word(at + 1);
-            let is_flutes = matches!(after, Some("LOC")) || self.labels(at, &["LOC", "LCF"]);
+            let is_flutes = matches!(after, Some("LOC")) || self.labels(at, &["LOC", "LCF", "AP"]);
             if is_flutes || after.is_some_and(|word| AFTER.contains(&word)) || self.labels(at, &BEFORE) {
                 flutes = flutes.or(is_flutes.then_some(number));
                 self.pieces[at] = Piece::Taken;

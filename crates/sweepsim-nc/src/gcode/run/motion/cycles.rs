@@ -105,7 +105,7 @@ impl Reader {
         } else if bottom <= plane {
             let clear = match self.modes.retract_to_plane {
                 true => plane,
-                false => initial.max(plane),
+                false => self.modes.return_level.unwrap_or(initial).max(plane),
             };
             self.hole(cycle, [plane, bottom, clear], &sticky)?
         } else {
