@@ -128,7 +128,7 @@ fn what_programs_leave_open() {
     let expected = [
         "understood  all but 2 of 12 blocks that were executed",
         "            to settle it: --offset G58=X,Y,Z, from the zero of the first work offset (in a job: offsets: {\"G58\": (X, Y, Z)})",
-        "   assumed  line 14: the place of G58: not known; the rapid in it is left out",
+        "   assumed  line 14: the place of G58: not known; its rapids are left out",
         "            to settle it: --diameters D3=… (in a job: diameters), 0 if it is only the tool's wear: the tool is then 0.125 nearer to the contour",
         "   assumed  line 7: D3: the size of tool 3, 0.25 across",
     ];

@@ -119,10 +119,9 @@ pub(in crate::drive) struct Elsewhere {
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::drive) struct LeftOut {
     pub(in crate::drive) first: (usize, usize),
-    /// The last one, and whether it is a rapid.
-    pub(in crate::drive) last: ((usize, usize), bool),
-    pub(in crate::drive) rapids: usize,
+    /// How many blocks have feed moves, and the last of them.
     pub(in crate::drive) feeds: usize,
+    pub(in crate::drive) last: (usize, usize),
 }
 
 /// Diameters of the tools: those that jobs and libraries describe, and once one is asked for, those of the comments.

@@ -78,15 +78,10 @@ impl Track {
     pub(in crate::drive) fn leaves_out(&mut self, rapid: bool) -> bool {
         let Some(elsewhere) = &self.elsewhere else { return false };
         let place = (self.place.file, self.place.line);
-        if let Some(left) = self.left_out.get_mut(&elsewhere.name) {
-            if left.last.0 != place {
-                *(if rapid { &mut left.rapids } else { &mut left.feeds }) += 1;
-                left.last = (place, rapid);
-            } else if left.last.1 && !rapid {
-                // A feed move may come with the rapid to its start.
-                (left.rapids, left.feeds) = (left.rapids - 1, left.feeds + 1);
-                left.last.1 = false;
-            }
+        let left = self.left_out.get_mut(&elsewhere.name);
+        if let Some(left) = left.filter(|left| !rapid && left.last != place) {
+            left.last = place;
+            left.feeds += 1;
         }
         self.joined = false;
         true
@@ -100,11 +95,9 @@ impl Track {
             let settle = format!(
                 "--offset {key}=X,Y,Z, from the zero of the first work offset (in a job: offsets: {{\"{key}\": (X, Y, Z)}})"
             );
-            let (taken, harmless) = match (left.feeds, left.rapids) {
-                (0, 0) => ("not known; no move in it gives X, Y and Z".to_owned(), true),
-                (0, 1) => ("not known; the rapid in it is left out".to_owned(), true),
-                (0, rapids) => (format!("not known; the {rapids} rapids in it are left out"), true),
-                (feeds, _) => (
+            let (taken, harmless) = match left.feeds {
+                0 => ("not known; its rapids are left out".to_owned(), true),
+                feeds => (
                     format!(
                         "not known: what it cuts is a set-up of its own; its blocks with {feeds} feed moves are left out"
                     ),
