@@ -102,6 +102,9 @@ impl Content {
             if line.is_empty() || line.starts_with(['%', '(', ';']) && !line.starts_with("$$") {
                 continue;
             }
+            if gcode::okuma_title(line).is_some() {
+                return Self::Gcode;
+            }
             if is_apt(line) {
                 return Self::Apt { line: line_number };
             }
@@ -216,6 +219,7 @@ mod tests {
             ("a\nlonger\ntext\nin\nwhich\none\nline\nis\nG1\nX1", Content::Unknown),
             ("o<pocket> sub\nG1 X1", Content::Gcode),
             ("#1 = 5\nG1 X#1", Content::Gcode),
+            ("$BRACKET.MIN%\nO1\nG15 H1", Content::Gcode),
             ("G0\0X1", Content::Binary),
         ] {
             assert_eq!(Content::of(text), content, "{text:?}");

@@ -104,6 +104,8 @@ fn read_bytes(
             Some(error.into_bytes()),
         ),
     };
+    let in_mm = options.in_program_units.then(|| options.in_mm(&text));
+    let options = in_mm.as_ref().unwrap_or(options);
     let text = Rc::new(text);
     let bytes = other.as_deref().unwrap_or(text.as_bytes());
     let read_table = || table::read_from(bytes, unit);

@@ -1,6 +1,6 @@
 //! Options about programs.
 
-use super::values::stock;
+use super::values::{diameter, offset, stock};
 use clap::Args;
 use clap::ValueHint;
 use std::path::PathBuf;
@@ -22,8 +22,19 @@ pub(crate) struct DialectOptions {
     #[arg(long = "as", value_name = "FORMAT", value_parser = known(|name| Format::named(name).is_some(), &Format::NAMES))]
     pub format: Option<String>,
     /// Goes on after problems of the program, and lists what was left out.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "strict")]
     pub lenient: bool,
+    /// Refuses what the program leaves to the control or to the operator, instead of assuming it.
+    #[arg(long)]
+    pub strict: bool,
+    /// What D means to cutter compensation, in the program's unit, like D3=0.25,D4=0 [default: the size of the tool in
+    /// the spindle, which is an assumption].
+    #[arg(long, value_name = "D3=SIZE,…", value_parser = diameter, value_delimiter = ',')]
+    pub diameters: Vec<(u32, f64)>,
+    /// Where a work offset is that the program does not set, in its unit from the zero of the first one that it uses,
+    /// like G55=100,0,0; may be given several times.
+    #[arg(long, value_name = "G55=X,Y,Z", value_parser = offset, allow_hyphen_values = true)]
+    pub offset: Vec<(String, [f64; 3])>,
 }
 
 /// How G-code is written.

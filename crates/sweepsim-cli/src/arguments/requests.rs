@@ -67,7 +67,9 @@ impl DialectOptions {
         options.controller.clone_from(&self.controller);
         options.machine.clone_from(&self.machine);
         options.format.clone_from(&self.format);
-        options.lenient = self.lenient;
+        (options.lenient, options.strict) = (self.lenient, self.strict);
+        options.diameters = self.diameters.iter().copied().collect();
+        options.offsets = self.offset.iter().cloned().collect();
         options
     }
 }

@@ -50,6 +50,32 @@ pub(super) fn limits(text: &str) -> Result<DeviationLimits, String> {
     }
 }
 
+/// `D3=0.25`, or `3=0.25`.
+pub(super) fn diameter(text: &str) -> Result<(u32, f64), String> {
+    let parts = text.trim().trim_start_matches(['D', 'd']).split_once('=');
+    match parts.map(|(number, size)| (number.trim().parse(), size.trim().parse::<f64>())) {
+        Some((Ok(number), Ok(size))) if size >= 0.0 && size.is_finite() => Ok((number, size)),
+        _ => Err("expected the number of a register and a diameter of 0 or more, like D3=0.25".to_owned()),
+    }
+}
+
+/// `G55=100,0,0`.
+pub(super) fn offset(text: &str) -> Result<(String, [f64; 3]), String> {
+    let expected = || "expected a work offset and three numbers, like G55=100,0,0".to_owned();
+    let (name, list) = text.split_once('=').ok_or_else(expected)?;
+    let numbers: Vec<_> = list.split(',').map(|word| word.trim().parse::<f64>()).collect();
+    let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+    let name = if name.starts_with(['g', 'G']) {
+        name.to_ascii_uppercase()
+    } else {
+        name.to_ascii_lowercase()
+    };
+    match numbers[..] {
+        [Ok(x), Ok(y), Ok(z)] if !name.is_empty() && [x, y, z].iter().all(|c| c.is_finite()) => Ok((name, [x, y, z])),
+        _ => Err(expected()),
+    }
+}
+
 pub(super) fn area(text: &str) -> Result<[f64; 4], String> {
     let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
     match numbers[..] {

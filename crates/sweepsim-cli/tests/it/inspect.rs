@@ -31,7 +31,7 @@ M30
 "#;
 
 const PLATE_SAID: &str = r#"   program  G-code, of any control, in millimetres
-     title  O12
+     title  PLATE
      moves  8 feed moves (1 arc) and 14 rapids, in 2 pieces
     extent  (0, −10.000, −12.000) … (20.000, 10.000, 30.000) mm
    cutting  (0, −10.000, −12.000) … (20.000, 10.000, 5.0000) mm
@@ -48,6 +48,7 @@ const PLATE_SAID: &str = r#"   program  G-code, of any control, in millimetres
    message  line 18: "CHANGE THE CLAMP"
       note  line 14: G64 P0.02: corners may be rounded by as much; the path is read as programmed
    ignored  line 15: M777 is not understood: ignored
+understood  all but 1 of 18 blocks that were executed
 "#;
 
 const TILTED: &str = r#"BEGIN PGM TILTED MM
@@ -78,6 +79,7 @@ const TILTED_SAID: &str = r#"   program  Heidenhain Klartext, in millimetres
             z −1.0000 … 50.000 mm, 3,000.0 rpm, 200.00 mm/min
      stock  block (−50.000, −50.000, −20.000) … (50.000, 50.000, 0) mm
    warning  line 8: PLANE turns the rotary axes: the path breaks here (2 times, first here)
+understood  all but 2 of 13 blocks that were executed
 "#;
 
 /// A table whose tool turns while it cuts.
@@ -111,5 +113,49 @@ fn programs_in_words() {
     assert!(
         known.contains("G-code of Haas") && !known.contains("at 10 m/min"),
         "{known}"
+    );
+}
+
+/// What a shop's program leaves open: said by `inspect`, and by the report of `verify`; settled by options, refused by `--strict`.
+#[test]
+fn what_programs_leave_open() {
+    let folder = Workdir::new("");
+    let shop = "%\nO0000(BRACKET)\n( 1/4\" DIA. 2 FLUTE E.M. )\nT3 M6\nG20 G90 G54 G0 X-1. Y0 Z.5 S9000 M3\nG1 Z-.1 F20.\nG41 D3 X0 Y0\nY1.\nX2.\nY0\nX0\n\
+                G40 X-1.\nG0 Z.5\nG90 G58 X12. Y20.\nM30\n%\n";
+    std::fs::write(folder.path("shop.nc"), shop).unwrap();
+    let said = folder.good(&["inspect", "shop.nc"]);
+    let tail: Vec<&str> = said.lines().rev().take(5).collect();
+    let expected = [
+        "understood  all but 2 of 12 blocks that were executed",
+        "            to settle it: --offset G58=X,Y,Z, from the zero of the first work offset (in a job: offsets: {\"G58\": (X, Y, Z)})",
+        "   assumed  line 14: the place of G58: not known; its rapids are left out",
+        "            to settle it: --diameters D3=… (in a job: diameters), 0 if it is only the tool's wear: the tool is then 0.125 nearer to the contour",
+        "   assumed  line 7: D3: the size of tool 3, 0.25 across",
+    ];
+    assert_eq!(tail, expected, "{said}");
+    assert!(said.contains("tool  3: flat end mill, diameter 6.3500"), "{said}");
+    let strict = folder.bad(&["inspect", "shop.nc", "--strict"]);
+    assert!(strict.contains("the diameter D3"), "{strict}");
+    let settled = folder.good(&["inspect", "shop.nc", "--diameters", "D3=0.25", "--offset", "G58=0,0,5"]);
+    assert!(!settled.contains("assumed"), "{settled}");
+    // The verdict of the bare program says it too, and so does a job that is made from it.
+    folder.good(&[
+        "verify", "shop.nc", "--cells", "40x40", "--only", "report", "--out", "out", "--quiet",
+    ]);
+    let report = std::fs::read_to_string(folder.path("out/report.json")).unwrap();
+    assert!(report.contains("line 7: assumed: D3: the size of tool 3"), "{report}");
+    folder.good(&[
+        "new",
+        "shop.nc",
+        "--diameters",
+        "D3=0.2",
+        "--offset",
+        "G58=0,0,5",
+        "--quiet",
+    ]);
+    let job = std::fs::read_to_string(folder.path("shop.ron")).unwrap();
+    assert!(
+        job.contains("diameters: { 3: 5.08 }") && job.contains("offsets: { \"G58\": (0, 0, 127) }"),
+        "{job}"
     );
 }

@@ -285,7 +285,7 @@ fn all_problems_of_a_program_in_a_job_are_reported() {
         "Job(tolerance: 1e-6, grid: Grid(min: (-5, -5), max: (5, 5), cells: (10, 10)), stock: Block(min: (-5, -5, -5), max: (5, 5, 0)), \
          tools: {1: Flat(radius: 1, length: 9)}, paths: [Path(tool: 1, file: \"bad.nc\")])",
     );
-    fs::write(folder.path("bad.nc"), "G0 X0 Y0 Z0\nG12 X5\nG1 X1 F9\nG31 X5\n").unwrap();
+    fs::write(folder.path("bad.nc"), "G0 X0 Y0 Z0\nG12 X5\nG1 X1 F9\nG60 X5\n").unwrap();
     let (in_job, alone) = (folder.bad(&["simulate", "job.ron"]), folder.bad(&["inspect", "bad.nc"]));
     for message in [&in_job, &alone] {
         assert_eq!(message.matches("error").count(), 2, "{message}");

@@ -34,7 +34,7 @@ impl Drafter<'_> {
     }
 
     /// What a library or the program says about a tool.
-    fn described(&self, number: u32) -> Option<ToolDescription> {
+    pub(super) fn described(&self, number: u32) -> Option<ToolDescription> {
         match (self.library.tools.get(&number), self.program.tools.get(&number)) {
             (Some(library), Some(program)) => Some(library.clone().or(program)),
             (Some(tool), None) | (None, Some(tool)) => Some(tool.clone()),

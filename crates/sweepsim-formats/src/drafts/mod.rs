@@ -4,6 +4,7 @@
 mod guesses;
 mod words;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path as FilePath, PathBuf};
 
@@ -50,6 +51,12 @@ pub struct DraftOptions {
     pub format: Option<String>,
     /// Whether to go on after problems of the program.
     pub lenient: bool,
+    /// Whether what the program leaves to the control or to the operator is an error.
+    pub strict: bool,
+    /// What `D` means to cutter compensation, by number, in the program's unit.
+    pub diameters: BTreeMap<u32, f64>,
+    /// Where work offsets are that the program does not set, by name, in its unit.
+    pub offsets: BTreeMap<String, [f64; 3]>,
     /// Whether to invent tools of which nothing is known, for the user to correct.
     pub invent: bool,
     /// The number of dexels.
@@ -145,6 +152,25 @@ fn refuse(file: &FilePath, message: String) -> FormatError {
     FormatError::new(Problem::syntax(message), None).in_file(file)
 }
 
+/// The diameters of tools that are known before the program is read.
+fn cutters(library: Option<&FilePath>, provided: &Provided) -> BTreeMap<u32, f64> {
+    // What is wrong with a library is said when its tools are wanted.
+    let library = library
+        .and_then(|file| read_library(file, false).ok())
+        .unwrap_or_default();
+    let described = library.tools.iter();
+    let mut cutters: BTreeMap<u32, f64> = described
+        .filter_map(|(&number, tool)| Some((number, tool.diameter?)))
+        .collect();
+    cutters.extend(
+        provided
+            .tools
+            .iter()
+            .map(|(&number, tool)| (number, 2.0 * tool.bounding_cylinder().radius)),
+    );
+    cutters
+}
+
 impl<'a> Drafter<'a> {
     fn new(file: &FilePath, options: &'a DraftOptions, provided: &'a Provided) -> Result<Self, FormatError> {
         let mut library = ToolLibrary::default();
@@ -171,6 +197,11 @@ impl<'a> Drafter<'a> {
         }
         let mut read = ReadOptions::default();
         read.lenient = options.lenient;
+        read.strict = options.strict;
+        read.diameters.clone_from(&options.diameters);
+        read.offsets.clone_from(&options.offsets);
+        read.in_program_units = true;
+        read.cutters = cutters(options.tools.as_deref(), provided);
         read.exact_arcs = true;
         let unknown = |what: &str, name: &str, names: &[&str]| {
             refuse(

@@ -105,7 +105,9 @@ impl Drafter<'_> {
         let mut said = vec![format!(
             "program: {moves} moves, {rapids} of them rapids, in {sections} {pieces}, written in {units}"
         )];
-        for (number, tool) in tools {
+        for &number in tools.keys() {
+            // What is guessed of it is said there.
+            let Some(tool) = self.described(number) else { continue };
             let name = tool
                 .name
                 .as_deref()
@@ -139,6 +141,23 @@ impl Drafter<'_> {
         }
         if options.lenient {
             fields.push("lenient: true".to_owned());
+        }
+        if options.strict {
+            fields.push("strict: true".to_owned());
+        }
+        let unit = self.program.units.in_mm();
+        let mm = |value: f64| shortest(value * unit);
+        let list = |rows: Vec<String>| format!("{{ {} }}", rows.join(", "));
+        if !options.diameters.is_empty() {
+            let rows = options
+                .diameters
+                .iter()
+                .map(|(number, size)| format!("{number}: {}", mm(*size)));
+            fields.push(format!("diameters: {}", list(rows.collect())));
+        }
+        if !options.offsets.is_empty() {
+            let row = |(name, at): (&String, &[f64; 3])| format!("{}: ({})", quoted(name), at.map(mm).join(", "));
+            fields.push(format!("offsets: {}", list(options.offsets.iter().map(row).collect())));
         }
         Ok(fields)
     }

@@ -238,8 +238,11 @@ pub(crate) struct Path {
     pub controller: Option<String>,
     pub machine: Option<String>,
     pub lenient: Option<bool>,
+    pub strict: Option<bool>,
     #[serde(default)]
     pub diameters: BTreeMap<u32, f64>,
+    #[serde(default)]
+    pub offsets: BTreeMap<String, (f64, f64, f64)>,
 }
 
 /// The tip, the axis, and optionally the direction of the tool's x axis: two or three triples in parentheses.

@@ -31,7 +31,7 @@ fn one_message_with_its_place() {
     file("bad.csv", "x,y,z,i,j,k\n0,0,0,0,0,1\n0,0,0,0,zero,1\n");
     file("axis.csv", "x,y,z,i,j,k\n0,0,0,0,0,0\n");
     file("turn.csv", "x,y,z,i,j,k\n0,0,0,0,0,1\n0,0,0,0,0,-1\n");
-    file("bad.ngc", "G0 X0 Y0 Z5\nG1 Z-1\nG31 X1\n");
+    file("bad.ngc", "G0 X0 Y0 Z5\nG1 Z-1\nG60 X1\n");
     file("two.ngc", "T7 M6\nG0 X0 Y0 Z5\nG1 Z-1\n");
     file("path.xyz", "");
     let stock = "Block(min: (0, 0, 0), max: (10, 10, 5))";
@@ -281,7 +281,7 @@ fn one_message_with_its_place() {
         (
             poses,
             "file: \"bad.ngc\"".into(),
-            "bad.ngc:3:1: G31: probing is not supported yet",
+            "bad.ngc:3:1: G60: single-direction positioning is not supported yet",
         ),
         (
             poses,

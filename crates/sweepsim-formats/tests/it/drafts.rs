@@ -106,7 +106,7 @@ fn a_job_can_name_the_program_alone() {
         ),
         (
             "controller: \"abacus\"",
-            "the controller of this program is \"abacus\", but must be one of linuxcnc, fanuc, haas, siemens, heidenhain, grbl",
+            "the controller of this program is \"abacus\", but must be one of linuxcnc, fanuc, haas, siemens, heidenhain, grbl, okuma",
         ),
     ] {
         let found = bad(&format!("Job({stock}, paths: [Path(file: \"plate.cls\", {field})])"));

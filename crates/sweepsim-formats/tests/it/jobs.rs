@@ -258,10 +258,17 @@ fn a_job_says_what_d_means() {
             );
             Job::parse(&text, &folder.path().join("job.ron"))
         };
-        let message = job("").unwrap_err().to_string();
+        let message = job(", strict: true").unwrap_err().to_string();
         assert!(
             message.contains("compensation") || message.contains("radius"),
             "{message}"
+        );
+        // Without it, it is the size of the job's tool, which a note says.
+        let assumed = job("").unwrap();
+        let mut notes = assumed.paths.iter().flat_map(|path| &path.notes);
+        assert!(
+            notes.any(|note| note.message.contains("the size of tool 1, 0.5 across")),
+            "{control}"
         );
         for diameter in [0.5, 0.0] {
             let read = job(&format!(", diameters: {{{number}: {diameter:?}}}")).unwrap();
@@ -282,4 +289,41 @@ fn a_job_says_what_d_means() {
             "{message}"
         );
     }
+}
+
+#[test]
+fn a_job_places_work_offsets() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "G20 G54 G0 X0 Y0 Z1.\nG1 Z0. F10.\nG55 G0 X0 Y0 Z1.\nG1 Z0.\n";
+    std::fs::write(folder.path().join("a.nc"), text).unwrap();
+    let job = |more: &str| {
+        let text = format!(
+            r#"Job(units: Inch, grid: Grid(min: (-2, -2), max: (9, 4), cells: (6, 6)), stock: Block(min: (0, 0, -1), max: (2, 2, 0)),
+            tools: {{ 1: Flat(radius: 0.25, length: 2) }}, paths: [Path(tool: 1, file: "a.nc"{more})])"#
+        );
+        Job::parse(&text, &folder.path().join("job.ron"))
+    };
+    let ends = |more: &str| -> Vec<f64> {
+        let read = job(more).unwrap();
+        let tips = read
+            .paths
+            .iter()
+            .flat_map(|path| path.path.poses())
+            .map(|pose| pose.tip());
+        tips.map(|tip| tip[0]).collect()
+    };
+    // In inches, as the job is.
+    assert_eq!(ends(", offsets: {\"G55\": (5, 0, 0)}"), [0.0, 0.0, 127.0, 127.0]);
+    assert_eq!(ends(""), [0.0, 0.0]);
+    let said = job("").unwrap();
+    assert!(
+        said.paths[0]
+            .notes
+            .iter()
+            .any(|note| note.message.contains("the place of G55"))
+    );
+    let refused = job(", strict: true").unwrap_err().to_string();
+    assert!(refused.contains("a move in G55"), "{refused}");
+    let bad = job(", offsets: {\"G55\": (inf, 0, 0)}").unwrap_err().to_string();
+    assert!(bad.contains("a work offset is inf, but must be three numbers"), "{bad}");
 }

@@ -4,7 +4,7 @@ use super::{Description, described_tool};
 use crate::base::words::{clock, counted, measure, point};
 use sweepsim_nc::tools::ToolLibrary;
 use sweepsim_nc::{
-    Controller, EventKind, Format, Program, ProgramPose, RAPID_SPEED, StockDescription, ToolUsage, Units,
+    Controller, EventKind, Format, NoteKind, Program, ProgramPose, RAPID_SPEED, StockDescription, ToolUsage, Units,
 };
 
 /// The most directions of the tool, stops or messages that are listed.
@@ -52,8 +52,44 @@ pub(crate) fn program(text: &mut Description, program: &Program) {
         text.line("stock", &described_stock(stock));
     }
     happenings(text, program);
-    for note in &program.notes {
-        text.line(kind(&note.message), &note.to_string());
+    reading(text, program);
+}
+
+/// What was understood, assumed and ignored: the worst first.
+fn reading(text: &mut Description, program: &Program) {
+    let file = |index: usize| match program.files.get(index) {
+        Some(file) if index > 0 => format!("{}, ", file.display()),
+        _ => String::new(),
+    };
+    let assumed = |text: &mut Description, worst: bool| {
+        for assumption in program
+            .assumptions
+            .iter()
+            .filter(|assumption| assumption.changes_verdict == worst)
+        {
+            let (what, taken, times) = (&assumption.what, &assumption.taken, assumption.times());
+            let place = format!("{}line {}", file(assumption.file), assumption.line);
+            text.line("assumed", &format!("{place}: {what}: {taken}{times}"));
+            text.line("", &format!("to settle it: {}", assumption.settle));
+        }
+    };
+    let notes = |text: &mut Description, kind: NoteKind, label: &str| {
+        for note in program.notes.iter().filter(|note| note.kind() == kind) {
+            text.line(label, &note.to_string());
+        }
+    };
+    assumed(text, true);
+    notes(text, NoteKind::Warning, "warning");
+    assumed(text, false);
+    notes(text, NoteKind::Read, "note");
+    notes(text, NoteKind::Ignored, "ignored");
+    if program.blocks > 0 {
+        let all = counted(program.blocks as u64, "block");
+        let odd = match program.blocks - program.understood {
+            0 => "all".to_owned(),
+            odd => format!("all but {odd}"),
+        };
+        text.line("understood", &format!("{odd} of {all} that were executed"));
     }
 }
 
@@ -76,6 +112,7 @@ fn language(program: &Program) -> String {
             Some(Controller::Fanuc) => "G-code of Fanuc",
             Some(Controller::Haas) => "G-code of Haas",
             Some(Controller::Grbl) => "G-code of Grbl",
+            Some(Controller::Okuma) => "G-code of Okuma",
             _ => "G-code, of any control",
         },
     };
@@ -213,18 +250,6 @@ fn happenings(text: &mut Description, program: &Program) {
     }
     if messages > MOST_LISTED {
         text.line("", &format!("and {} more", messages - MOST_LISTED));
-    }
-}
-
-/// What a note is about, by its words.
-fn kind(message: &str) -> &'static str {
-    let says = |words: &[&str]| words.iter().any(|word| message.contains(word));
-    if says(&["ignored"]) {
-        "ignored"
-    } else if says(&["left out", "does not fit", "the path breaks", "not known", "unknown"]) {
-        "warning"
-    } else {
-        "note"
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::request::by_name;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use sweepsim_formats::{DraftOptions, DraftStock};
 use sweepsim_nc::{Controller, Format, Machine, ReadOptions};
@@ -34,6 +35,12 @@ pub struct DialectOptions {
     pub format: Option<String>,
     /// Whether to go on after problems of the program, and list what was left out.
     pub lenient: bool,
+    /// Whether what the program leaves to the control or to the operator is an error, instead of an assumption.
+    pub strict: bool,
+    /// What `D` means to cutter compensation, by number, in the program's unit.
+    pub diameters: BTreeMap<u32, f64>,
+    /// Where work offsets are that the program does not set, by name (`G55`), in its unit from the zero of the first.
+    pub offsets: BTreeMap<String, [f64; 3]>,
 }
 
 /// What a job says, given with a program instead.
@@ -59,6 +66,10 @@ impl DialectOptions {
     pub fn reading(&self) -> Result<ReadOptions, String> {
         let mut options = ReadOptions::default();
         options.lenient = self.lenient;
+        options.strict = self.strict;
+        options.diameters.clone_from(&self.diameters);
+        options.offsets.clone_from(&self.offsets);
+        options.in_program_units = true;
         options.controller = self.controller.as_deref().and_then(Controller::named);
         options.format = self.format.as_deref().and_then(Format::named);
         if let Some(machine) = &self.machine {
@@ -79,6 +90,9 @@ impl ProgramOptions {
             ("machine", self.dialect.machine.is_some()),
             ("as", self.dialect.format.is_some()),
             ("lenient", self.dialect.lenient),
+            ("strict", self.dialect.strict),
+            ("diameters", !self.dialect.diameters.is_empty()),
+            ("offset", !self.dialect.offsets.is_empty()),
         ];
         given.iter().find(|(_, given)| *given).map(|(name, _)| *name)
     }
@@ -98,6 +112,9 @@ impl ProgramOptions {
         options.machine.clone_from(&self.dialect.machine);
         options.format.clone_from(&self.dialect.format);
         options.lenient = self.dialect.lenient;
+        options.strict = self.dialect.strict;
+        options.diameters.clone_from(&self.dialect.diameters);
+        options.offsets.clone_from(&self.dialect.offsets);
         options.folder = folder.to_owned();
         options
     }

@@ -65,11 +65,8 @@ impl Reader<'_> {
 
     pub fn load(&mut self, statement: &Statement) -> Result<(), NcProblem> {
         let named = |item: &&Item| item.number.is_none() && !item.is("TOOL") && !item.is("MILL");
-        let number = match statement.number() {
-            Some(value) if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) => Some(value as u32),
-            Some(value) => return Err(NcProblem::value("a tool number", value, "a whole number")),
-            None => None,
-        };
+        let number = |value| NcProblem::whole("a tool number", value, 0..=u32::MAX, "a whole number");
+        let number = statement.number().map(number).transpose()?;
         let name = statement.items.iter().find(named).map(|item| item.text);
         let (number, note) = self.tools.load(number, name);
         if let Some(note) = note {

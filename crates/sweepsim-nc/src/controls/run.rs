@@ -62,6 +62,7 @@ pub(super) fn run(running: &mut impl Running, text: &str, options: &ReadOptions)
             );
             Err((problem, running.whole(at)))
         } else {
+            running.track().begin_block();
             running.run(at)
         };
         let Err((problem, span)) = result else { continue };

@@ -1,16 +1,20 @@
 //! The course of a tool: where it is, in which frame, and its poses so far. Readers say where it goes.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace};
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
+use super::unknowns::{Cutters, Elsewhere, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
+use crate::text::assumption::AssumptionList;
 use crate::text::error::NcProblem;
 use crate::text::numbers::rounded;
 
@@ -51,6 +55,16 @@ pub(crate) struct Track {
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
+    /// Whether something of the block was assumed, left out or ignored.
+    pub(super) doubted: bool,
+    pub(super) strict: bool,
+    pub(super) cutters: Cutters,
+    pub(super) assumptions: AssumptionList,
+    /// The work offset of the moves, if only the machine knows where it is.
+    pub(super) elsewhere: Option<Elsewhere>,
+    pub(super) left_out: BTreeMap<String, LeftOut>,
+    /// The axes along which a move that only the machine knows has gone.
+    pub(super) lost: [bool; 3],
 }
 
 impl Track {
@@ -90,6 +104,13 @@ impl Track {
             of_poses: false,
             contour: Contour::default(),
             text: 0,
+            doubted: false,
+            strict: options.strict,
+            cutters: Cutters::new(options),
+            assumptions: AssumptionList::default(),
+            elsewhere: None,
+            left_out: BTreeMap::new(),
+            lost: [false; 3],
         }
     }
 
@@ -105,10 +126,6 @@ impl Track {
         track.direct = Some([0.0, 0.0, 1.0]);
         track.of_poses = true;
         track
-    }
-
-    pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
-        self.notes.add(self.place.line, message);
     }
 
     /// The position in the frame, if it is known.
@@ -196,6 +213,12 @@ impl Track {
         for (coordinate, moves) in self.xyz.iter_mut().zip(axes) {
             if moves || any {
                 *coordinate = None;
+            }
+        }
+        for k in (0..3).filter(|&k| axes[k] || any) {
+            self.lost[k] = true;
+            if let Some(elsewhere) = &mut self.elsewhere {
+                elsewhere.kept[k] = None;
             }
         }
         self.parked = None;
@@ -323,9 +346,13 @@ impl Track {
         self.xyz = xyz.map(Some);
         self.abc = abc;
         self.parked = None;
+        self.lost = [false; 3];
     }
 
     pub(super) fn push(&mut self, to: Position, way: Move, rapid: bool) -> Result<(), NcProblem> {
+        if self.leaves_out(rapid) {
+            return Ok(());
+        }
         let pose = match self.direct {
             Some(direction) if self.coordinates == Coordinates::Tip => {
                 let axis = Vector3::from(direction).normalize();

@@ -1,10 +1,12 @@
 //! The meaning of G and M codes.
 
-use super::offsets::{EXTENDED, WorkOffset};
+use super::offsets::EXTENDED;
+use super::okuma;
 use super::syntax::block::Block;
-use crate::drive::ArcPlane;
+use crate::drive::{ArcPlane, WorkOffset};
 use crate::model::event::Coolant;
 use crate::model::program::FeedMode;
+use crate::model::read_options::Controller;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,6 +115,12 @@ pub(crate) enum Code {
     TipControlByLetters,
     MacroCall,
     Dwell,
+    /// Okuma's G71 Z: to which cycles return.
+    ReturnLevel,
+    /// Okuma's G116 T.
+    ChangeTool,
+    /// G31, G38.2 and their kin: a move up to where the part is.
+    Probe,
     /// G5: a spline, or a high-speed mode.
     SplineOrMode,
     /// G5.1: a spline, or a high-speed mode.
@@ -132,7 +140,10 @@ pub(crate) enum Code {
 }
 
 /// The meaning of `G value` in a block: some codes mean different things with different words, on different controls.
-pub(crate) fn g_in(value: f64, block: &Block) -> Code {
+pub(crate) fn g_in(value: f64, block: &Block, controller: Option<Controller>) -> Code {
+    if let Some(code) = okuma::code(value, block).filter(|_| controller == Some(Controller::Okuma)) {
+        return code;
+    }
     const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
     let given = |letters: &str| letters.chars().any(|letter| block.has(letter));
     match g(value) {
@@ -197,7 +208,7 @@ fn g(value: f64) -> Code {
         320 | 330 => Code::Motion(MotionMode::Thread),
         331 => Code::Motion(MotionMode::RigidTap),
         332..=339 => Code::Refused("threading is"),
-        310 | 350..=389 | 1360 => Code::Refused("probing is"),
+        310 | 350..=389 | 1360 => Code::Probe,
         400 => Code::CancelCompensation,
         410 | 420 => Code::Compensation {
             left: tenths == 410.0,
@@ -338,8 +349,8 @@ pub(crate) fn m(value: f64) -> Misc {
         73 => Misc::SaveModesForCall,
         96 | 198 => Misc::Refused("these subprograms are"),
         91 | 92 => Misc::Refused("machine coordinates by M code are"),
-        // Clamps, spindle orientation, overrides, pallets, digital and analog output.
-        10 | 11 | 19 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
+        // Clamps, spindle orientation, rigid tapping, overrides, pallets, digital and analog output.
+        10 | 11 | 19 | 29 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
         _ => Misc::Unknown,
     }
 }

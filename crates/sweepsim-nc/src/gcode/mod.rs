@@ -25,12 +25,14 @@ mod dialect;
 mod flow;
 mod modes;
 mod offsets;
+mod okuma;
 mod run;
 mod syntax;
 
 use std::path::Path;
 use std::rc::Rc;
 
+pub(crate) use self::dialect::okuma_title;
 use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
@@ -51,8 +53,8 @@ use crate::tools::comments;
 /// assert!(program.poses[0].rapid && !program.poses[2].rapid);
 /// assert_eq!(program.poses[2].pose.axis(), [1.0, 0.0, 0.0]);
 ///
-/// let error = gcode::read("G0 X0 Y0 Z5\nG31 X1", &ReadOptions::default()).unwrap_err();
-/// assert!(error.to_string().starts_with("2:1: G31"));
+/// let error = gcode::read("G0 X0 Y0 Z5\nG60 X1", &ReadOptions::default()).unwrap_err();
+/// assert!(error.to_string().starts_with("2:1: G60"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {

@@ -19,6 +19,17 @@ pub(crate) struct CycleWords {
     pub initial: Option<f64>,
 }
 
+/// What has switched tip control on.
+#[derive(Default)]
+pub(crate) struct TipControl {
+    /// The machine's kinematics (M428).
+    pub kinematics: bool,
+    /// The length offset (G43.4).
+    pub by_length: bool,
+    /// G43.5: tool vectors.
+    pub vectors: bool,
+}
+
 /// Modal state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Modes {
@@ -40,6 +51,8 @@ pub(crate) struct Modes {
     pub curve_tangent: Option<[f64; 2]>,
     /// G99: cycles retract to their plane R.
     pub retract_to_plane: bool,
+    /// Okuma's G71 Z, in mm: the level that takes the place of where a cycle began.
+    pub return_level: Option<f64>,
     pub cycle: CycleWords,
     /// G16.
     pub polar: bool,

@@ -1,37 +1,23 @@
-//! Work offsets: from the coordinates of a program to the common frame of its poses.
-//!
-//! A work offset that the program sets itself (`G10 L2`), or that the control's variables give, is applied. One that is not known is
-//! taken as the part's frame; it must then be the only one in use, since only the machine knows the distance between two of them.
+//! Work offsets, and the shifts on top of them: from the coordinates of a program to the common frame of its poses.
 
-use std::collections::BTreeMap;
-
+use crate::drive::{Placed, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
+use crate::model::read_options::ReadOptions;
 use crate::text::error::NcProblem;
 
-/// The number of a work offset: 0 … 8 for G54 … G59.3, 100 + P for G54.1 P.
-pub(crate) type WorkOffset = u32;
-
-/// Where G54.1 P1 and its kin begin.
+/// Where G54.1 P1 and its kin begin: 0 … 8 are G54 … G59.3, 100 + P is G54.1 P.
 pub(crate) const EXTENDED: WorkOffset = 100;
-
-/// The place of a work offset.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Placed {
-    pub origin: [f64; 3],
-    /// Degrees about Z.
-    pub turn: f64,
-}
+/// Where those of Okuma begin: `G15 H1`.
+pub(crate) const OKUMA: WorkOffset = EXTENDED + 1000;
+/// Above all of them.
+const MOST: WorkOffset = OKUMA + 1000;
 
 /// The work offsets, and the shifts on top of them. Millimetres.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Offsets {
-    /// The active one.
-    pub active: WorkOffset,
-    placed: BTreeMap<WorkOffset, Placed>,
+    pub work: WorkOffsets,
     /// Fanuc's external offset, which is added to all.
     pub external: [f64; 3],
-    /// The frame of the moves so far: an offset that the program does not set, `None` for those that it sets.
-    used: Option<Option<WorkOffset>>,
     /// Set by G92. Where that came before any position was known, relative to the frame that it made.
     pub shift: [f64; 3],
     /// What G92.3 restores; `None` until the program has set it: the machine remembers it from the last program.
@@ -44,6 +30,10 @@ pub(crate) struct Offsets {
     lost: [bool; 3],
     /// Set by G52.
     pub local: [f64; 3],
+    /// Whether positions in machine coordinates are known: the control's variables were given.
+    pub machine_known: bool,
+    /// The homes of G28 and G30 in machine coordinates, as far as they are known.
+    pub homes: [Option<[f64; 3]>; 2],
 }
 
 /// The name of a work offset in a program.
@@ -51,37 +41,54 @@ pub(crate) fn name(index: WorkOffset) -> String {
     match index {
         0..=5 => format!("G{}", 54 + index),
         6..=8 => format!("G59.{}", index - 5),
+        OKUMA.. => format!("G15 H{}", index - OKUMA),
         _ => format!("G54.1 P{}", index.saturating_sub(EXTENDED)),
     }
 }
 
-fn describe(frame: Option<WorkOffset>) -> String {
-    match frame {
-        Some(index) => format!("a move in {}, which the program does not set,", name(index)),
-        None => "one in an offset that it sets".into(),
-    }
-}
-
 impl Offsets {
+    /// Those that the control's variables give, or the user.
+    pub(crate) fn new(options: &ReadOptions) -> Self {
+        let (variables, unit) = (&options.variables, if options.inch { 25.4 } else { 1.0 });
+        let value = |index: u32| variables.get(&index).map(|value| value * unit);
+        let point = |first: u32| [0, 1, 2].map(|k| value(first + k));
+        let home = |first: u32| match point(first) {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        };
+        let mut work = WorkOffsets::new(name, MOST, options);
+        for offset in 0..9 {
+            let first = 5221 + 20 * offset;
+            let given = point(first);
+            if given.iter().any(Option::is_some) {
+                let turn = variables.get(&(first + 9)).copied().unwrap_or(0.0);
+                let origin = given.map(|x| x.unwrap_or(0.0));
+                work.place(offset, Placed { origin, turn });
+            }
+        }
+        Self {
+            work,
+            external: [0.0; 3],
+            shift: [0.0; 3],
+            shift_saved: None,
+            shifted: false,
+            placed_by_shift: [false; 3],
+            lost: [false; 3],
+            local: [0.0; 3],
+            machine_known: !variables.is_empty(),
+            homes: [home(5161), home(5181)],
+        }
+    }
+
     /// From coordinates after scaling and rotation (G51, G68) to the frame of the poses.
     pub(crate) fn map(&self) -> WorkFrame {
-        let Placed { origin, turn } = self.placed(self.active).unwrap_or_default();
         let shift = WorkFrame::shifted(std::array::from_fn(|k| self.shift[k] + self.local[k]));
-        let outer = WorkFrame::shifted(std::array::from_fn(|k| origin[k] + self.external[k]));
-        outer.then(&WorkFrame::turned(2, turn).then(&shift))
+        WorkFrame::shifted(self.external).then(&self.work.frame().then(&shift))
     }
 
-    pub(crate) fn placed(&self, index: WorkOffset) -> Option<Placed> {
-        self.placed.get(&index).copied()
-    }
-
-    pub(crate) fn place(&mut self, index: WorkOffset, placed: Placed) {
-        self.placed.insert(index, placed);
-    }
-
-    /// Whether the frame of the active offset is known to the machine.
-    pub(crate) fn active_is_placed(&self) -> bool {
-        self.placed.contains_key(&self.active)
+    /// Whether positions in machine coordinates are known now.
+    pub(crate) fn knows_machine(&self) -> bool {
+        self.machine_known || self.work.is_placed()
     }
 
     /// Checks that coordinates along axis `k` are known relative to those before.
@@ -101,19 +108,6 @@ impl Offsets {
     /// Whether a G92 before the first move has made the frame.
     pub(crate) fn made_by_shift(&self) -> bool {
         self.placed_by_shift.contains(&true)
-    }
-
-    /// Checks that the active offset is known relative to those used before.
-    pub(crate) fn use_active(&mut self) -> Result<(), NcProblem> {
-        let frame = (!self.active_is_placed()).then_some(self.active);
-        let before = *self.used.get_or_insert(frame);
-        if before == frame {
-            return Ok(());
-        }
-        Err(NcProblem::unsupported(
-            format!("{} after {} is", describe(frame), describe(before)),
-            "only the machine knows the distance between them; expected one work offset, or G10 L2 for each before its first move",
-        ))
     }
 
     /// `G92`: gives the current position `here` (in the program's coordinates) the given coordinates. Before the first move (`fresh`) an

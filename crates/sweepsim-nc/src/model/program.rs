@@ -13,6 +13,7 @@ use crate::model::positions::ProgramPositions;
 use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
+use crate::text::assumption::Assumption;
 
 /// The unit of length of a program's words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,11 +68,46 @@ pub struct Note {
 }
 
 impl Note {
+    /// What it is about.
+    #[must_use]
+    pub fn kind(&self) -> NoteKind {
+        NoteKind::of(&self.message)
+    }
+
     /// A note on a line.
     #[must_use]
     pub fn new(line: usize, message: impl Into<String>) -> Self {
         let message = message.into();
         Self { line, message }
+    }
+}
+
+/// What a note is about: the worst first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum NoteKind {
+    /// Something that the program leaves to the control, or to the operator.
+    Assumed,
+    /// Something was left out, or is odd.
+    Warning,
+    /// How something was read.
+    Read,
+    /// Something that changes no part was ignored.
+    Ignored,
+}
+
+impl NoteKind {
+    pub(crate) fn of(message: &str) -> Self {
+        let says = |words: &[&str]| words.iter().any(|word| message.contains(word));
+        if message.starts_with("assumed: ") {
+            Self::Assumed
+        } else if says(&["ignored"]) {
+            Self::Ignored
+        } else if says(&["left out", "does not fit", "the path breaks", "not known", "unknown"]) {
+            Self::Warning
+        } else {
+            Self::Read
+        }
     }
 }
 
@@ -109,6 +145,12 @@ pub struct Program {
     pub stock: Option<StockDescription>,
     /// The machine, as given or as implied by the program's words.
     pub machine: Machine,
+    /// How many blocks were executed: of NC programs alone.
+    pub blocks: usize,
+    /// How many of them were understood as they are: nothing in them was assumed, left out or ignored.
+    pub understood: usize,
+    /// What the program leaves to the control or to the operator, and what was taken in its place: the worst first. Each is a note too.
+    pub assumptions: Vec<Assumption>,
     /// What was ignored or assumed: one note of each kind, sorted by line.
     pub notes: Vec<Note>,
 }

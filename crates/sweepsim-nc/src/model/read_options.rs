@@ -50,6 +50,15 @@ pub struct ReadOptions {
     /// Diameters that `D` means, by number, in millimetres, where the table has no row of it: without one, nothing is known of a length, but the
     /// contour can be compensated. In Siemens's and Heidenhain's programs the number is the tool's.
     pub diameters: BTreeMap<u32, f64>,
+    /// Diameters of the tools themselves, by number, in millimetres, as a job or a library describes them: what `D` is assumed to mean where nothing says it.
+    pub cutters: BTreeMap<u32, f64>,
+    /// Where work offsets are that the program does not set, by name (`G55`, `G54.1P3`, `G505`, `preset2`), in millimetres from the zero of the first one that
+    /// it uses.
+    pub offsets: BTreeMap<String, [f64; 3]>,
+    /// Whether [`diameters`](Self::diameters) and [`offsets`](Self::offsets) are in the program's unit instead of millimetres.
+    pub in_program_units: bool,
+    /// Whether what a program leaves to the control or to the operator is an error, instead of an [`Assumption`](crate::Assumption).
+    pub strict: bool,
     /// The control's numbered variables when the program starts, as in LinuxCNC's `.var` file: work offsets from `#5221`, homes from `#5161`.
     /// With them, positions in machine coordinates are known, and work offsets that the program does not set.
     pub variables: BTreeMap<u32, f64>,
@@ -81,6 +90,10 @@ impl Default for ReadOptions {
             block_delete: false,
             tool_offsets: BTreeMap::new(),
             diameters: BTreeMap::new(),
+            cutters: BTreeMap::new(),
+            offsets: BTreeMap::new(),
+            in_program_units: false,
+            strict: false,
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             most_blocks: 20_000_000,
@@ -90,7 +103,51 @@ impl Default for ReadOptions {
     }
 }
 
+/// Whether the lengths of a program are in inches, by its first word that says so.
+fn is_in_inches(text: &str) -> Option<bool> {
+    const WORDS: [(&str, bool); 6] = [
+        ("G20", true),
+        ("G21", false),
+        ("G70", true),
+        ("G71", false),
+        ("G700", true),
+        ("G710", false),
+    ];
+    for line in text.lines() {
+        let upper = line.split(['(', ';']).next().unwrap_or("").trim().to_ascii_uppercase();
+        if upper.contains("BEGIN PGM") {
+            return Some(upper.ends_with("INCH"));
+        }
+        let said = upper.match_indices('G').find_map(|(at, _)| {
+            let digits = upper[at + 1..]
+                .bytes()
+                .take_while(|b| b.is_ascii_digit() || *b == b'.')
+                .count();
+            let code = &upper[at..=at + digits];
+            WORDS.iter().find(|(word, _)| *word == code)
+        });
+        if let Some((_, inch)) = said {
+            return Some(*inch);
+        }
+    }
+    None
+}
+
 impl ReadOptions {
+    /// Those given in a program's unit in millimetres.
+    pub(crate) fn in_mm(&self, text: &str) -> Self {
+        let unit = if is_in_inches(text).unwrap_or(self.inch) {
+            25.4
+        } else {
+            1.0
+        };
+        let mut options = self.clone();
+        options.in_program_units = false;
+        options.diameters.values_mut().for_each(|diameter| *diameter *= unit);
+        options.offsets.values_mut().flatten().for_each(|x| *x *= unit);
+        options
+    }
+
     /// Whether programs can be read so.
     pub(crate) fn check(&self) -> Result<(), NcError> {
         if self.arc_tolerance > 0.0 && self.arc_tolerance.is_finite() {
@@ -130,11 +187,13 @@ pub enum Controller {
     Heidenhain,
     /// Grbl and TinyG.
     Grbl,
+    /// Okuma OSP, milling.
+    Okuma,
 }
 
 impl Controller {
     /// The names that [`named`](Self::named) knows.
-    pub const NAMES: [&str; 6] = ["linuxcnc", "fanuc", "haas", "siemens", "heidenhain", "grbl"];
+    pub const NAMES: [&str; 7] = ["linuxcnc", "fanuc", "haas", "siemens", "heidenhain", "grbl", "okuma"];
 
     /// Its name.
     ///
@@ -150,6 +209,7 @@ impl Controller {
             Self::Siemens => "siemens",
             Self::Heidenhain => "heidenhain",
             Self::Grbl => "grbl",
+            Self::Okuma => "okuma",
         }
     }
 
@@ -169,6 +229,7 @@ impl Controller {
             "siemens" | "sinumerik" | "840d" => Self::Siemens,
             "heidenhain" | "klartext" => Self::Heidenhain,
             "grbl" | "tinyg" => Self::Grbl,
+            "okuma" | "osp" => Self::Okuma,
             _ => return None,
         })
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 use sweepsim_motion::PoseError;
@@ -134,6 +134,20 @@ impl NcProblem {
             what: shortened(what.into(), MAX_VALUE),
             found: shortened(found.to_string(), MAX_VALUE),
             expected: expected.into(),
+        }
+    }
+
+    /// A whole number of this range.
+    pub(crate) fn whole(
+        what: impl Into<String>,
+        found: f64,
+        range: RangeInclusive<u32>,
+        expected: impl Into<String>,
+    ) -> Result<u32, Self> {
+        if found.fract() == 0.0 && (f64::from(*range.start())..=f64::from(*range.end())).contains(&found) {
+            Ok(found as u32)
+        } else {
+            Err(Self::value(what, found, expected))
         }
     }
 

@@ -70,6 +70,20 @@ pub(crate) enum Cutter {
     },
 }
 
+/// The kind whose solid is the envelope of a tool of another kind: threads and edges of taps and boring bars are within a cylinder, a probe ends in a ball.
+fn envelope(name: &str) -> Option<CutterKind> {
+    let lower = name.to_ascii_lowercase().replace(['-', '_'], " ");
+    let has = |words: &[&str]| words.iter().any(|word| lower.contains(word));
+    let taps = lower
+        .split(|c: char| !c.is_ascii_alphabetic())
+        .any(|word| word == "tap");
+    match () {
+        () if has(&["probe"]) => Some(CutterKind::Ball),
+        () if taps || has(&["thread mill", "threadmill", "boring", "reamer"]) => Some(CutterKind::Flat),
+        () => None,
+    }
+}
+
 fn needed(what: &'static str, value: Option<f64>) -> Result<f64, ToolProblem> {
     match value {
         None => Err(ToolProblem::Missing(what)),
@@ -109,6 +123,9 @@ impl ToolDescription {
     /// [`ToolProblem`]: what is missing, by name, and measures that make no solid.
     pub fn build(&self) -> Result<BuiltTool, ToolProblem> {
         let mut notes = self.notes.clone();
+        if let Some(CutterKind::Other(name)) = &self.kind {
+            notes.push(format!("a {name}: the solid is its envelope"));
+        }
         let cutter = match self.cutter()? {
             Cutter::Flat { radius, length } => Tool::flat(radius, length)?,
             Cutter::Ball { radius, length } => Tool::ball(radius, length)?,
@@ -165,9 +182,10 @@ impl ToolDescription {
     /// The cutter with all its measures.
     pub(crate) fn cutter(&self) -> Result<Cutter, ToolProblem> {
         let kind = self.kind.as_ref().ok_or(ToolProblem::Missing("shape"))?;
-        if let CutterKind::Other(name) = kind {
-            return Err(ToolProblem::Kind(name.clone()));
-        }
+        let kind = match kind {
+            CutterKind::Other(name) => &envelope(name).ok_or_else(|| ToolProblem::Kind(name.clone()))?,
+            kind => kind,
+        };
         if let CutterKind::Apt(apt) = kind {
             let mut apt = *apt;
             if let Some(length) = self.flute_length {

@@ -2,13 +2,16 @@
 //!
 //! - Posts of Fusion and HSM: `(T1 D=6. CR=3. - ZMIN=-12. - ball end mill)`. `TAPER` is the included angle of drills, and half of it for
 //!   the other kinds.
+//! - Free text, of Mastercam, Hurco and others: [`free_text`]. One without the number of its tool is about the next change of tools, or that of its block or of one right before.
 //! - CutViewer, Carbide Create: `(TOOL/MILL, diameter, corner radius, height, taper)`, `(TOOL/DRILL, diameter, point angle, height)`,
 //!   `(STOCK/BLOCK, size x, y, z, zero x, y, z)`, where the zero is that of the program, from the lower corner; `(stockMin:…)`,
 //!   `(stockMax:…)`. They hold for the next tool of the program.
 
 use std::collections::BTreeMap;
 
+use super::free_text::{self, Described};
 use super::fusion::kind_of;
+use crate::model::program::Program;
 use crate::model::stock::StockDescription;
 use crate::model::tool::{CutterKind, ToolDescription};
 
@@ -19,26 +22,60 @@ pub(crate) struct Comments {
     pub stock: Option<StockDescription>,
 }
 
-/// Words without which no comment says anything.
-const WORDS: [&str; 6] = ["D=", "TOOL/", "STOCK/", "tool/", "stock/", "stockM"];
+/// Describes tools by their names, where nothing else does.
+pub(crate) fn name_tools(program: &mut Program, names: &BTreeMap<String, u32>) {
+    let unit = program.units.in_mm();
+    for (name, number) in names {
+        if let Some(tool) = of_name(name.trim_matches('"'), unit) {
+            program.tools.entry(*number).or_insert(tool);
+        }
+    }
+}
+
+/// A tool that has a name instead of a comment: `MILL_D10_R0.5`.
+fn of_name(name: &str, unit: f64) -> Option<ToolDescription> {
+    let tool = free_text::read(&format!("T0 {name}"), unit)?.tool;
+    Some(ToolDescription {
+        name: Some(name.to_owned()),
+        ..tool
+    })
+}
+
+/// How many lines behind a change of tools a comment without a number may be about that tool.
+const BEHIND: usize = 2;
+
+impl Comments {
+    /// The first description of a tool holds.
+    fn add(&mut self, number: u32, index: usize, tool: ToolDescription) {
+        let tool = ToolDescription {
+            line: index + 1,
+            ..tool
+        };
+        self.tools.entry(number).or_insert(tool);
+    }
+}
 
 /// Reads the comments of a program. `unit` is in millimetres per unit of the program.
 pub(crate) fn read(text: &str, unit: f64) -> Comments {
     let mut found = Comments::default();
-    if !WORDS.iter().any(|word| text.contains(word)) {
+    if !text.contains(['(', ';']) {
         return found;
     }
-    let mut next_tool: Option<ToolDescription> = None;
+    let mut calls = Calls::new(text);
     let mut corners = [None; 2];
     for (index, line) in text.lines().enumerate() {
         let Some(at) = line.find(['(', ';']) else {
-            take_up(line, &mut next_tool, &mut found);
+            calls.block(index, line, &mut found);
             continue;
         };
-        let comment = line[at + 1..].split(')').next().unwrap_or("").trim();
+        let comment = line[at + 1..].trim();
+        let comment = comment
+            .strip_suffix(')')
+            .unwrap_or_else(|| comment.split(')').next().unwrap_or(""))
+            .trim();
         let upper = comment.to_ascii_uppercase();
         if let Some(list) = upper.strip_prefix("TOOL/") {
-            next_tool = cut_viewer(list, unit).map(|tool| ToolDescription {
+            calls.next = cut_viewer(list, unit).map(|tool| ToolDescription {
                 line: index + 1,
                 ..tool
             });
@@ -49,12 +86,21 @@ pub(crate) fn read(text: &str, unit: f64) -> Comments {
         } else if let Some(list) = upper.strip_prefix("STOCKMAX:") {
             corners[1] = point(list, unit);
         } else if let Some((number, tool)) = fusion(&upper, comment, unit) {
-            found.tools.entry(number).or_insert(ToolDescription {
-                line: index + 1,
-                ..tool
-            });
+            found.add(number, index, tool);
+        } else if let Some(Described { number, tool }) = free_text::read(comment, unit) {
+            // A block and its comment belong together.
+            let here = number.or_else(|| calls.changed_in(&line[..at]));
+            match here.or_else(|| calls.just_changed(index, &found)) {
+                Some(number) => found.add(number, index, tool),
+                None => {
+                    calls.next = Some(ToolDescription {
+                        line: index + 1,
+                        ..tool
+                    })
+                }
+            }
         }
-        take_up(&line[..at], &mut next_tool, &mut found);
+        calls.block(index, &line[..at], &mut found);
     }
     if let [Some(min), Some(max)] = corners
         && (0..3).all(|k| min[k] < max[k])
@@ -64,16 +110,68 @@ pub(crate) fn read(text: &str, unit: f64) -> Comments {
     found
 }
 
-/// Gives the tool described last to the tool that a block selects.
-fn take_up(block: &str, next: &mut Option<ToolDescription>, found: &mut Comments) {
-    if next.is_none() {
-        return;
+/// The changes of tools, to which comments without a number belong.
+struct Calls {
+    /// Whether they are blocks with T and M6; a T by itself then is for later.
+    with_m6: bool,
+    /// The tool described last, for the next change.
+    next: Option<ToolDescription>,
+    /// The last change, and its line.
+    last: Option<(u32, usize)>,
+}
+
+impl Calls {
+    fn new(text: &str) -> Self {
+        let changes = |line: &str| tool_word(block_of(line)).is_some() && has_m6(block_of(line));
+        Self {
+            with_m6: text.lines().any(changes),
+            next: None,
+            last: None,
+        }
     }
-    let Some(at) = block.find(['T', 't']) else { return };
-    let digits: String = block[at + 1..].chars().take_while(char::is_ascii_digit).collect();
-    if let (Ok(number), Some(tool)) = (digits.parse(), next.take()) {
-        found.tools.entry(number).or_insert(tool);
+
+    /// The tool that a block changes to.
+    fn changed_in(&self, block: &str) -> Option<u32> {
+        tool_word(block).filter(|_| !self.with_m6 || has_m6(block))
     }
+
+    /// The tool of a change right before, if nothing describes it.
+    fn just_changed(&self, index: usize, found: &Comments) -> Option<u32> {
+        let (number, line) = self.last?;
+        (index - line <= BEHIND && !found.tools.contains_key(&number)).then_some(number)
+    }
+
+    /// Gives the tool described last to the tool that a block changes to.
+    fn block(&mut self, index: usize, block: &str, found: &mut Comments) {
+        let Some(number) = self.changed_in(block) else { return };
+        self.last = Some((number, index));
+        if let Some(tool) = self.next.take() {
+            found.tools.entry(number).or_insert(tool);
+        }
+    }
+}
+
+/// A line without its comment.
+fn block_of(line: &str) -> &str {
+    line.split(['(', ';']).next().unwrap_or("")
+}
+
+/// The number of a T word.
+fn tool_word(block: &str) -> Option<u32> {
+    let at = block.find(['T', 't'])?;
+    if block[..at].ends_with(|c: char| c.is_ascii_alphabetic()) {
+        return None;
+    }
+    let digits = block[at + 1..].len() - block[at + 1..].trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    block[at + 1..at + 1 + digits].parse().ok()
+}
+
+fn has_m6(block: &str) -> bool {
+    block.match_indices(['M', 'm']).any(|(at, _)| {
+        let rest = block[at + 1..].strip_prefix('0').unwrap_or(&block[at + 1..]);
+        rest.strip_prefix('6')
+            .is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()))
+    })
 }
 
 /// The numbers of a list, with or without a unit behind them.
@@ -144,7 +242,7 @@ fn cut_viewer(list: &str, unit: f64) -> Option<ToolDescription> {
 }
 
 fn fusion(upper: &str, comment: &str, unit: f64) -> Option<(u32, ToolDescription)> {
-    let rest = upper.strip_prefix('T')?;
+    let rest = upper.trim_start_matches(';').trim_start().strip_prefix(['T', '#'])?;
     let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
     let number = digits.parse().ok()?;
     let get = |name: &str| -> Option<f64> {
@@ -227,6 +325,40 @@ mod tests {
                 min: [0.0, 0.0, -1.0],
                 max: [100.0, 100.0, 0.0]
             })
+        );
+    }
+
+    #[test]
+    fn comments_before_beside_and_behind_a_change() {
+        let sizes = |text: &str| -> Vec<(u32, f64)> {
+            let tools = read(text, 1.0).tools;
+            tools
+                .into_iter()
+                .map(|(number, tool)| (number, tool.diameter.unwrap()))
+                .collect()
+        };
+        // Before each change, with the next tool staged after it.
+        let before = "( 1/4\" DIA. E.M. )\nN1 T3 M6\nT2\nG0 X0\n( 1/8\" DIA. BALL E.M. )\nN2 T2 M6\nT3\nG1 X1\nM30\n";
+        assert_eq!(sizes(before), [(2, 3.175), (3, 6.35)]);
+        // In its block, and behind it.
+        assert_eq!(
+            sizes("T5 M06 (8MM ENDMILL)\nG0 X0\nT6 M06\n(6MM DRILL)\nG0 X0\n"),
+            [(5, 8.0), (6, 6.0)]
+        );
+        // Without M6 each T is a change.
+        assert_eq!(
+            sizes("(8MM ENDMILL)\nT5\nG0 X0\n(6MM ENDMILL)\nT6\n"),
+            [(5, 8.0), (6, 6.0)]
+        );
+        // A table at the head comes first; an operation's name is no tool.
+        let head = "(T1| 10. FLAT ENDMILL|H1)\n(DRILL 4 HOLES)\nT1 M6\n(8MM ENDMILL)\nG0 X0\nM30\n";
+        assert_eq!(sizes(head), [(1, 10.0)]);
+        let found = &read("(T4| 12. FLAT ENDMILL|H4|XY STOCK TO LEAVE - .2)\nT4 M6\n", 1.0).tools[&4];
+        assert_eq!((found.name.as_deref(), found.line), (Some("12. FLAT ENDMILL"), 1));
+        // Klartext.
+        assert_eq!(
+            sizes("12 ;T2 D=+4 CR=+0 - ZMIN=-15 - flat end mill\n13 ;  #3 D=10 - ZMIN=-4.5 - flat end mill\n"),
+            [(2, 4.0), (3, 10.0)]
         );
     }
 

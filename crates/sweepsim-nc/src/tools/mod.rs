@@ -15,6 +15,7 @@ mod bodies;
 mod build;
 mod camotics;
 pub(crate) mod comments;
+mod free_text;
 mod freecad;
 mod fusion;
 mod json;

@@ -12,7 +12,9 @@ fn exact(text: &str) -> Program {
 }
 
 fn error(text: &str) -> String {
-    heidenhain::read(text, &ReadOptions::default()).unwrap_err().to_string()
+    let mut strict = ReadOptions::default();
+    strict.strict = true;
+    heidenhain::read(text, &strict).unwrap_err().to_string()
 }
 
 fn tips(program: &Program) -> Vec<[f64; 3]> {
@@ -236,7 +238,8 @@ fn frames() {
         [1.0, 2.0, 3.0],
     );
     assert!(
-        error("CYCL DEF 247 Q339=+4\nL X+1 Y+2 Z+3 FMAX\nCYCL DEF 247 Q339=+5").contains("preset 5 after preset 4")
+        error("CYCL DEF 247 Q339=+4\nL X+1 Y+2 Z+3 FMAX\nCYCL DEF 247 Q339=+5\nL X+2 FMAX")
+            .contains("a move in preset 5, which")
     );
     // A plane at a shifted datum: Rz(90) Rx(90) x = y, its z is x.
     let program =
@@ -355,8 +358,8 @@ fn bad_programs_say_where_and_what() {
             "3:1: an arc without its sense: expected DR+ or DR-",
         ),
         (
-            "L X+0 Y+0 Z+0 FMAX\nCYCL DEF 251 POCKET",
-            "2:1: cycle 251 is not supported yet: expected 7, 8, 9, 10, 11, 200 to 209 or 247, or the moves that it makes",
+            "L X+0 Y+0 Z+0 FMAX\nCYCL DEF 21 PILOT DRILLING",
+            "2:1: cycle 21 is not supported yet: expected 7, 8, 9, 10, 11, 200 to 209, 240, 241, 247, 251 to 253, 256, 257 or 262, or the moves that it makes",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nCYCL CALL",
@@ -371,12 +374,12 @@ fn bad_programs_say_where_and_what() {
             "2:7: PLANE AXIAL is not supported yet: expected PLANE SPATIAL, EULER, VECTOR or RESET",
         ),
         (
-            "L X+0 Y+0 Z+0 FMAX\nM140 MB MAX",
-            "2:1: M140 is not supported yet: the path of the tool would be unknown",
+            "L X+0 Y+0 Z+0 FMAX\nM138 A",
+            "2:1: M138 is not supported yet: the path of the tool would be unknown",
         ),
         (
-            "L X+0 Y+0 Z+0 FMAX\nTCH PROBE 400",
-            "2:1: TCH is not supported yet: expected L, C, CC, CR, CT, CP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
+            "L X+0 Y+0 Z+0 FMAX\nAPPR LT X+1",
+            "2:1: APPR is not supported yet: expected L, C, CC, CR, CT, CP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nL X+1.5.2",

@@ -2,6 +2,8 @@
 
 mod accelerations;
 mod apt;
+mod assumptions;
+mod cam_klartext;
 mod contents;
 mod contours;
 mod fuzz;
@@ -14,8 +16,10 @@ mod klartext_cycles;
 mod level_arcs;
 mod limits;
 mod machines;
+mod okuma;
 mod packed;
 mod pieces;
+mod pockets;
 mod posted;
 mod programs;
 mod round_trips;

@@ -7,8 +7,15 @@ fn program(text: &str) -> Program {
     read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
+/// Whatever the program leaves to the control is an error.
+fn strict() -> ReadOptions {
+    let mut options = ReadOptions::default();
+    options.strict = true;
+    options
+}
+
 fn error(text: &str) -> String {
-    read(text, &ReadOptions::default()).expect_err(text).to_string()
+    read(text, &strict()).expect_err(text).to_string()
 }
 
 fn tips(text: &str) -> Vec<[f64; 3]> {

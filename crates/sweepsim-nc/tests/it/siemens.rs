@@ -15,7 +15,9 @@ fn exact(text: &str) -> Program {
 }
 
 fn error(text: &str) -> String {
-    siemens::read(text, &ReadOptions::default()).unwrap_err().to_string()
+    let mut strict = ReadOptions::default();
+    strict.strict = true;
+    siemens::read(text, &strict).unwrap_err().to_string()
 }
 
 fn tips(program: &Program) -> Vec<[f64; 3]> {
@@ -244,7 +246,10 @@ fn tools_events_and_machine_moves() {
             .iter()
             .any(|note| note.message.contains("\"DRILL\" is taken as T2"))
     );
-    assert!(error("G54 G0 X0 Y0 Z0\nG55 X1").starts_with("2:5: moves in G55 after moves in G54 are not supported yet"));
+    assert!(
+        error("G54 G0 X0 Y0 Z0\nG55 X1")
+            .starts_with("2:5: a move in G55, which the program does not set, after a move in G54")
+    );
 }
 
 #[test]

@@ -74,9 +74,17 @@ fn fusion() {
             "a second tool 2: ignored",
         ]
     );
+    // A tap is what its threads turn within.
+    let mut tap = library.tools[&4].clone();
+    assert_eq!(tap.build().unwrap_err().to_string(), "the flute length is missing");
+    tap.flute_length = Some(12.0);
+    let built = tap.build().unwrap();
+    assert_eq!(built.cutter.bounding_cylinder().radius, 2.5);
+    assert_eq!(built.notes, ["a tap right hand: the solid is its envelope"]);
+    tap.kind = Some(CutterKind::Other("form mill".into()));
     assert_eq!(
-        library.tools[&4].build().unwrap_err().to_string(),
-        "the shape of this tool, \"tap right hand\", is not supported: describe it in a job with `Profile`"
+        tap.build().unwrap_err().to_string(),
+        "the shape of this tool, \"form mill\", is not supported: describe it in a job with `Profile`"
     );
     // A cone from radius 1 to 5 over 4, and a cylinder up to 8.
     assert_eq!(

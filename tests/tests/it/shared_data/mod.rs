@@ -9,6 +9,7 @@ mod impeller;
 mod meshes;
 mod points;
 mod programs;
+mod shop;
 mod siemens;
 mod splines;
 mod stored;

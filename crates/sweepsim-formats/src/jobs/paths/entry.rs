@@ -168,6 +168,7 @@ impl JobReader<'_> {
                 options.arc_tolerance = arc_tolerance;
                 options.inch = self.unit != 1.0;
                 self.dialect(raw, &mut options, &steps)?;
+                options.cutters = tools.diameters();
                 options.machine = std::mem::take(&mut options.machine).tip_control(raw.tip_control.unwrap_or(false));
                 let given = match law {
                     schema::Law::Rotary(axes) => Some(table(axes)),
@@ -242,6 +243,15 @@ impl JobReader<'_> {
         steps: &impl Fn(&[Step]) -> Vec<Step>,
     ) -> Result<(), FormatError> {
         options.lenient = raw.lenient.unwrap_or(false);
+        options.strict = raw.strict.unwrap_or(false);
+        for (name, &(x, y, z)) in &raw.offsets {
+            let place = steps(&["offsets".into(), name.as_str().into()]);
+            let finite = [x, y, z].iter().all(|c| c.is_finite());
+            self.check("a work offset", x + y + z, finite, "three numbers", &place)?;
+            options
+                .offsets
+                .insert(name.replace(' ', ""), [x, y, z].map(|c| c * self.unit));
+        }
         for (number, diameter) in &raw.diameters {
             let place = steps(&["diameters".into(), number.to_string().as_str().into()]);
             self.check(

@@ -44,6 +44,16 @@ impl ToolBox {
         }
     }
 
+    /// The diameters of the job's tools, and of those of its library.
+    pub fn diameters(&self) -> BTreeMap<u32, f64> {
+        let library = self.library.iter().flat_map(|(tools, _)| tools);
+        let mut found: BTreeMap<u32, f64> = library
+            .filter_map(|(&number, tool)| Some((number, tool.diameter?)))
+            .collect();
+        found.extend(self.tools.iter().map(|(&number, tool)| (number, width(tool))));
+        found
+    }
+
     /// Makes sure that there is a tool of this number. `program` has the tools that a program describes, and its name.
     pub fn need(
         &mut self,
@@ -103,9 +113,13 @@ impl ToolBox {
     }
 }
 
+/// The diameter of a tool at its widest.
+fn width(tool: &Tool) -> f64 {
+    2.0 * tool.bounding_cylinder().radius
+}
+
 /// A note on a tool of the job that is wider or narrower than the tool of its number in a program or library.
 fn other_diameter(number: u32, tool: &Tool, description: &ToolDescription, source: &str) -> Option<Note> {
-    let width = |tool: &Tool| 2.0 * tool.bounding_cylinder().radius;
     let own = width(tool);
     // Programs mostly give no more than a diameter.
     let built = || Some(width(&description.build().ok()?.cutter));

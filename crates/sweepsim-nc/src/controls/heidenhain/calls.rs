@@ -39,13 +39,9 @@ impl Reader<'_> {
             None => LevelKind::Subprogram,
             Some(text) => {
                 let times = self.parameters.value(text).map_err(|problem| (problem, line.all()))?;
-                if !(0.0..=65_534.0).contains(&times) || times.fract() != 0.0 {
-                    return Err((
-                        NcProblem::value("REP", times, "a whole number from 0 to 65534"),
-                        line.all(),
-                    ));
-                }
-                if times == 0.0 || from >= index {
+                let times = NcProblem::whole("REP", times, 0..=65_534, "a whole number from 0 to 65534");
+                let times = times.map_err(|problem| (problem, line.all()))?;
+                if times == 0 || from >= index {
                     return Ok(());
                 }
                 LevelKind::Section {

@@ -3,8 +3,9 @@
 use super::interpreter::Reader;
 use super::line::Line;
 use super::planes::is_frame_cycle;
-use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
+use crate::drive::{Cycle, HoleCycle, HoleWork, Pecks, Pocket, WayOut};
 use crate::model::event::EventKind;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// By how much cycle 202 leaves the wall, in mm.
@@ -51,36 +52,143 @@ impl Reader<'_> {
             }
             // Tolerance, spindle orientation, patterns' reference: they move nothing.
             13 | 32 => Ok(()),
-            200..=209 => {
-                self.cycle = Some(self.define(number, line)?);
+            200..=209 | 240 | 241 | 262 => {
+                self.cycle = Some(Cycle::Hole(self.define(number, line)?));
+                Ok(())
+            }
+            251..=253 | 256 | 257 => {
+                let pocket = self.pocket(number, line)?;
+                self.cycle = Some(Cycle::Pocket(format!("cycle {number}"), Box::new(pocket)));
+                Ok(())
+            }
+            // Those of the machine's builder, and of its probe.
+            300..=499 => {
+                let what = format!("cycle {number}, of the machine's builder or its probe");
+                let assumption = Assumption::new(what, "it cuts nothing: left out", "the moves written out");
+                self.track.assume(assumption.harmless());
                 Ok(())
             }
             _ => {
                 let problem = NcProblem::unsupported(
                     format!("cycle {number} is"),
-                    "expected 7, 8, 9, 10, 11, 200 to 209 or 247, or the moves that it makes",
+                    "expected 7, 8, 9, 10, 11, 200 to 209, 240, 241, 247, 251 to 253, 256, 257 or 262, or the moves that it makes",
                 );
                 Err(whole(problem))
             }
         }
     }
 
-    fn define(&self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
-        let find = |parameter: u32| -> Result<Option<f64>, Located> {
-            let name = format!("Q{parameter}=");
-            for (index, token) in line.tokens.iter().enumerate() {
-                if let Some(rest) = token.text.strip_prefix(&name) {
-                    let text = if rest.is_empty() { line.word(index + 1) } else { rest };
-                    return match self.parameters.value(text) {
-                        Ok(value) => Ok(Some(value)),
-                        // FMAX, FAUTO.
-                        Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
-                        Err(problem) => Err((problem, token.span.clone())),
-                    };
-                }
+    /// A parameter of a cycle, if it is there and a number.
+    fn parameter(&self, line: &Line, parameter: u32) -> Result<Option<f64>, Located> {
+        let name = format!("Q{parameter}=");
+        for (index, token) in line.tokens.iter().enumerate() {
+            if let Some(rest) = token.text.strip_prefix(&name) {
+                let text = if rest.is_empty() { line.word(index + 1) } else { rest };
+                return match self.parameters.value(text) {
+                    Ok(value) => Ok(Some(value)),
+                    // FMAX, FAUTO.
+                    Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
+                    Err(problem) => Err((problem, token.span.clone())),
+                };
             }
-            Ok(None)
+        }
+        Ok(None)
+    }
+
+    /// Pockets (251, 252), slots (253) and studs (256, 257).
+    ///
+    /// Source: *TNC 620, Cycle Programming* (340 56x-02), 5.2 to 5.7.
+    fn pocket(&mut self, number: u32, line: &Line) -> Result<Pocket, Located> {
+        let fail = |problem| (problem, line.all());
+        let tool = self.cutter_radius().ok_or_else(|| {
+            fail(NcProblem::syntax(format!(
+                "the radius of the tool of cycle {number} is not known: expected --diameters (in a job: `diameters`), or TOOL DEF … R"
+            )))
+        })?;
+        let find = |parameter: u32| self.parameter(line, parameter);
+        let unit = self.unit();
+        let length = |parameter: u32| Ok::<Option<f64>, Located>(find(parameter)?.map(|value| value * unit));
+        let need = |parameter: u32| {
+            let problem = || {
+                NcProblem::syntax(format!(
+                    "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
+                ))
+            };
+            length(parameter)?.ok_or_else(|| fail(problem()))
         };
+        let (half, corner, raw) = match number {
+            251 => ([0.5 * need(218)?, 0.5 * need(219)?], length(220)?.unwrap_or(0.0), None),
+            252 => ([0.5 * need(223)?; 2], 0.5 * need(223)?, None),
+            253 => ([0.5 * need(218)?, 0.5 * need(219)?], 0.5 * need(219)?, None),
+            256 => {
+                let raw = [0.5 * need(424)?, 0.5 * need(425)?];
+                (
+                    [0.5 * need(218)?, 0.5 * need(219)?],
+                    length(220)?.unwrap_or(0.0),
+                    Some(raw),
+                )
+            }
+            _ => ([0.5 * need(223)?; 2], 0.5 * need(223)?, Some([0.5 * need(222)?; 2])),
+        };
+        let [x, y] = half;
+        let aside = match (number, find(367)?.unwrap_or(0.0)) {
+            (253, 1.0) => [x, 0.0],
+            (253, 2.0) => [x - corner, 0.0],
+            (253, 3.0) => [corner - x, 0.0],
+            (253, 4.0) => [-x, 0.0],
+            (251 | 256, 1.0) => [x, y],
+            (251 | 256, 2.0) => [-x, y],
+            (251 | 256, 3.0) => [-x, -y],
+            (251 | 256, 4.0) => [x, -y],
+            _ => [0.0; 2],
+        };
+        let surface = length(203)?.unwrap_or(0.0);
+        let start = surface + need(200)?.abs();
+        let depth = need(201)?;
+        if depth >= 0.0 {
+            return Err(fail(NcProblem::value(
+                format!("the depth Q201 of cycle {number}"),
+                depth,
+                "negative",
+            )));
+        }
+        // Roughing alone leaves what is left for finishing.
+        let kind = find(215)?.unwrap_or(0.0);
+        let left = if kind == 1.0 {
+            [length(368)?.unwrap_or(0.0), length(369)?.unwrap_or(0.0)]
+        } else {
+            [0.0; 2]
+        };
+        let infeed = if kind == 2.0 { length(338)? } else { length(202)? };
+        let climbs = find(351)? != Some(-1.0);
+        Ok(Pocket {
+            half,
+            corner,
+            raw,
+            aside,
+            turn: find(if number == 253 { 374 } else { 224 })?.unwrap_or(0.0),
+            start,
+            surface,
+            bottom: surface + depth,
+            end: start.max(surface + length(204)?.unwrap_or(0.0)),
+            infeed: infeed.unwrap_or(0.0),
+            left,
+            rim_alone: kind == 2.0,
+            tool,
+            step: tool * find(370)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0),
+            feed: find(207)?,
+            plunge: find(206)?,
+            clockwise: climbs == raw.is_some(),
+        })
+    }
+
+    fn define(&mut self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
+        let tool = if matches!(number, 208 | 262) {
+            self.cutter_radius()
+        } else {
+            None
+        };
+        let find = |parameter: u32| self.parameter(line, parameter);
         let unit = self.unit();
         let length = |parameter: u32| Ok::<Option<f64>, Located>(find(parameter)?.map(|value| value * unit));
         let need = |parameter: u32| {
@@ -141,7 +249,11 @@ impl Reader<'_> {
             };
             return Ok(hole);
         }
-        let depth = need(201)?;
+        let depth = match number {
+            // As deep as the cone of a point of 90 degrees is wide.
+            240 if find(343)? == Some(1.0) => -0.5 * need(344)?.abs(),
+            _ => need(201)?,
+        };
         if depth >= 0.0 {
             return Err((
                 NcProblem::value(format!("the depth Q201 of cycle {number}"), depth, "negative"),
@@ -165,18 +277,18 @@ impl Reader<'_> {
                     });
                 }
             }
-            208 => {
-                let (diameter, pitch) = (need(335)?, need(334)?);
-                let Some(tool) = self.cutter_radius() else {
-                    let problem = NcProblem::syntax(
-                        "the radius of the tool of cycle 208 is not known: expected it in the tool table, or TOOL DEF … R",
-                    );
+            208 | 262 => {
+                let (diameter, pitch) = (need(335)?, need(if number == 208 { 334 } else { 239 })?.abs());
+                let Some(tool) = tool else {
+                    let problem = NcProblem::syntax(format!(
+                        "the radius of the tool of cycle {number} is not known: expected it in the tool table, or TOOL DEF … R"
+                    ));
                     return Err(fail(problem));
                 };
                 let radius = 0.5 * diameter - tool;
                 if !(radius > 0.0 && pitch > 0.0) {
                     let problem = NcProblem::value(
-                        "the hole of cycle 208",
+                        format!("the hole of cycle {number}"),
                         format!("{diameter} mm wide, with an infeed of {pitch} mm"),
                         format!("wider than the tool, {} mm, with a positive infeed", 2.0 * tool),
                     );
@@ -201,7 +313,7 @@ impl Reader<'_> {
     /// Calls the cycle at the current place.
     pub(super) fn drill(&mut self) -> Result<(), NcProblem> {
         match &self.cycle {
-            Some(cycle) => self.track.hole_here(cycle, self.modes.plane, self.uncertain),
+            Some(cycle) => self.track.cycle_here(cycle, self.modes.plane, self.uncertain),
             None if self.uncertain => Ok(()),
             None => Err(NcProblem::syntax(
                 "a cycle is called, but none is defined: expected CYCL DEF before it",

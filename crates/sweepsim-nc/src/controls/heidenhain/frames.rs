@@ -1,9 +1,11 @@
 //! The frames in effect.
 
+use crate::drive::{WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
+use crate::model::read_options::ReadOptions;
 
 /// The frames in effect.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Frames {
     /// `CYCL DEF 7`, before the plane is tilted and after.
     pub shift: [f64; 3],
@@ -14,17 +16,35 @@ pub(super) struct Frames {
     pub mirror: [bool; 3],
     pub rotation: f64,
     pub scale: Option<f64>,
-    pub preset: Option<f64>,
+    /// `CYCL DEF 247`.
+    pub work: WorkOffsets,
+}
+
+/// The name of a preset; those from 1 on are in the table of the control.
+fn preset_name(number: WorkOffset) -> String {
+    format!("preset {number}")
 }
 
 impl Frames {
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            shift: [0.0; 3],
+            tilted_shift: [0.0; 3],
+            tilt: None,
+            mirror: [false; 3],
+            rotation: 0.0,
+            scale: None,
+            work: WorkOffsets::new(preset_name, 1000, options),
+        }
+    }
+
     pub fn tilted(&self) -> bool {
         self.tilt.is_some()
     }
 
     /// Whether arcs and lengths are turned or scaled within the plane.
     pub fn total(&self, plane: [usize; 3]) -> WorkFrame {
-        let mut frame = WorkFrame::shifted(self.shift);
+        let mut frame = self.work.frame().then(&WorkFrame::shifted(self.shift));
         if let Some(tilt) = &self.tilt {
             frame = frame.then(tilt).then(&WorkFrame::shifted(self.tilted_shift));
         }

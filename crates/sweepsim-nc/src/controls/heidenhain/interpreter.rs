@@ -8,13 +8,15 @@ use super::line::{self, Line};
 use super::routine::Routine;
 use super::values::Parameters;
 use crate::controls::run::{self, BlockIndex, Library, Running};
-use crate::drive::{HoleCycle, ProgramPlace, Sense, Track};
+use crate::drive::{Cycle, ProgramPlace, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::model::stock::StockDescription;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcError, NcProblem};
+use crate::tools::comments;
 
 /// A program, subprogram or repeated section on its way.
 pub(super) struct Level {
@@ -61,7 +63,7 @@ pub(super) struct Reader<'a> {
     pub modes: Modes,
     /// The last move's end is made by the RND or CHF that follows.
     pub rounded: bool,
-    pub cycle: Option<HoleCycle>,
+    pub cycle: Option<Cycle>,
     pub uncertain: bool,
     pub(super) library: Library<'a>,
     pub(super) options: &'a ReadOptions,
@@ -78,7 +80,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         parameters: Parameters::default(),
-        frames: Frames::default(),
+        frames: Frames::new(options),
         modes: Modes {
             inch: options.inch,
             plane: [0, 1, 2],
@@ -101,8 +103,27 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         tools: BTreeMap::new(),
         stock: [[None; 3]; 2],
     };
+    reader.track.describe_tools(text);
+    // Names of tools are those that the comments give to their numbers.
+    let inch = text
+        .lines()
+        .take(20)
+        .any(|line| line.contains("BEGIN PGM") && line.trim_end().ends_with("INCH"));
+    let described = comments::read(text, if inch { 25.4 } else { 1.0 }).tools;
+    for (number, tool) in &described {
+        if let Some(name) = tool.name.as_deref().and_then(|name| name.split(" / ").next()) {
+            reader
+                .tools
+                .entry(format!("\"{}\"", name.trim().to_uppercase()))
+                .or_insert(*number);
+        }
+    }
     run::run(&mut reader, text, options)?;
-    Ok(reader.finish())
+    let names = std::mem::take(&mut reader.tools);
+    let mut program = reader.finish();
+    program.tools = described;
+    comments::name_tools(&mut program, &names);
+    Ok(program)
 }
 
 impl Running for Reader<'_> {
@@ -242,7 +263,7 @@ impl Reader<'_> {
             "BLK" => self.stock_corner(line)?,
             "TOOL" if line.word(1) == "CALL" => self.tool_call(line)?,
             "TOOL" if line.word(1) == "DEF" => self.tool_definition(line)?,
-            "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CC" | "RND" | "CHF" => self.path(line)?,
+            "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CC" | "RND" | "CHF" | "M140" => self.path(line)?,
             "LBL" if line.word(1) == "0" => {
                 if matches!(
                     self.stack.last(),
@@ -288,6 +309,11 @@ impl Reader<'_> {
             }
             word if word.starts_with('M') && word[1..].bytes().all(|b| b.is_ascii_digit()) => {
                 self.codes(line)?;
+            }
+            "TCH" => {
+                let taken = "its cycle cuts nothing: left out";
+                let assumption = Assumption::new("what a probe finds", taken, "a program without probing");
+                self.track.assume(assumption.harmless());
             }
             // A comment or structure item.
             word if word.starts_with('*') => {}

@@ -95,6 +95,11 @@ impl Line {
     }
 }
 
+/// A word without its leading I, and whether it had one: a relative value.
+pub(super) fn relative(word: &str) -> (bool, &str) {
+    word.strip_prefix('I').map_or((false, word), |rest| (true, rest))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,9 +1,9 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
 use super::interpreter::Reader;
-use super::line::Line;
-use crate::drive::{CompensationSettings, Corners};
+use super::line::{self, Line};
 use crate::machines::SHORTEST;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// The words of a move.
@@ -19,6 +19,8 @@ pub(super) struct MoveWords {
     pub(super) tool: [Option<f64>; 3],
     pub(super) rapid: bool,
     pub(super) machine: bool,
+    /// `M140 MB`: the way back along the tool, or all of it.
+    pub(super) retract: Option<Option<f64>>,
     /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
     pub(super) side: Option<Option<bool>>,
 }
@@ -27,7 +29,10 @@ const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Reader<'_> {
     fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
-        let mut words = MoveWords::default();
+        let mut words = MoveWords {
+            retract: (line.word(0) == "M140").then_some(None),
+            ..MoveWords::default()
+        };
         let mut index = 1;
         while index < line.tokens.len() {
             let token = &line.tokens[index];
@@ -48,11 +53,8 @@ impl Reader<'_> {
             }
             let here = |problem| (problem, token.span.clone());
             let value = |reader: &Self, rest: &str| reader.parameters.value(rest).map_err(here);
-            let (relative, name) = match text.strip_prefix('I') {
-                Some(rest) => (true, rest.to_owned()),
-                None => (false, text.clone()),
-            };
-            match name.as_str() {
+            let (relative, name) = line::relative(&text);
+            match name {
                 "R0" => words.side = Some(None),
                 "RL" => words.side = Some(Some(true)),
                 "RR" => words.side = Some(Some(false)),
@@ -64,6 +66,9 @@ impl Reader<'_> {
                 }
                 "FMAX" => words.rapid = true,
                 "FAUTO" | "F" => {}
+                "M140" => words.retract = words.retract.or(Some(None)),
+                "MB" | "MBMAX" => words.retract = Some(None),
+                name if name.starts_with("MB") => words.retract = Some(Some(value(self, &name[2..])? * self.unit())),
                 "DR+" => words.counter_clockwise = Some(true),
                 "DR-" => words.counter_clockwise = Some(false),
                 _ => {
@@ -142,6 +147,14 @@ impl Reader<'_> {
         } else if let Some(Some(left)) = words.side {
             self.compensate(left, &words, kind).map_err(whole)?;
         }
+        if let Some(way) = words.retract {
+            return self
+                .retract(
+                    way,
+                    words.rapid || !line.tokens.iter().any(|token| token.text.starts_with('F')),
+                )
+                .map_err(whole);
+        }
         if words.machine {
             self.track
                 .note("moves in machine coordinates are left out: the path breaks here");
@@ -150,6 +163,17 @@ impl Reader<'_> {
             return Ok(());
         }
         if abc != self.track.abc && self.frames.tilted() && !self.modes.tip_control {
+            let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
+            let axis = self.track.driver.axis(abc).map_err(whole)?;
+            let alone = !linear.contains(&true);
+            if alone && (0..3).all(|k| (axis[k] - normal[k]).abs() < 1e-6) {
+                // The axes turn the tool to the plane that there is.
+                if self.track.turn_to_angles(abc, Some(words.rapid)).map_err(whole)? {
+                    self.track
+                        .note("the rotary axes turn the tool to the plane: the path breaks here");
+                }
+                return Ok(());
+            }
             return Err(whole(NcProblem::unsupported(
                 "turning an axis in a tilted plane is",
                 "the plane would turn with it; expected PLANE RESET before it",
@@ -190,19 +214,44 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// `M140`: back along the tool, by so much or to the end of the travel.
+    fn retract(&mut self, way: Option<f64>, rapid: bool) -> Result<(), NcProblem> {
+        let (Some(way), Some(here)) = (way, self.track.known()) else {
+            if way.is_none() {
+                let taken = "the move is left out; where the tool is then is known again from the next moves";
+                let what = "the end of the travel along the tool (M140 MB MAX)";
+                self.track
+                    .assume(Assumption::new(what, taken, "M140 MB with a length").harmless());
+            }
+            self.track.leave([true; 3]);
+            return Ok(());
+        };
+        let axis = self.track.direction()?;
+        let at = self.track.frame().point(here);
+        let back = std::array::from_fn(|k| at[k] + way * axis[k]);
+        let target = self.track.frame().inverse_point(back).unwrap_or(here);
+        self.track.line(target, self.track.abc, rapid)
+    }
+
     /// Where a block ends, in the frame; `None` if that is not known yet.
     fn target(&mut self, words: &MoveWords, kind: &str, line: &Line) -> Result<Option<[f64; 3]>, Located> {
         let whole = |problem| (problem, line.all());
         let cuts = !words.rapid;
         let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP");
         let [u, v, _] = self.modes.plane;
-        for k in 0..3 {
+        self.track.use_offset(&mut self.frames.work).map_err(whole)?;
+        let needed = |k: usize| {
             let relative = words.axes[k].is_some_and(|(_, relative)| relative);
             let given = words.axes[k].is_some() || polar && (k == u || k == v);
-            if self.track.xyz[k].is_none() && (relative || cuts && !given) && !self.uncertain {
-                self.track.note(format!("{} is not known here: taken as 0", AXES[k]));
-                self.track.xyz[k] = Some(0.0);
+            relative || cuts && !given
+        };
+        if !self.uncertain && !self.track.complete(needed) {
+            for k in 0..3 {
+                if let Some((value, false)) = words.axes[k] {
+                    self.track.xyz[k] = Some(value);
+                }
             }
+            return Ok(None);
         }
         let mut xyz = self.track.xyz;
         if polar {
@@ -304,50 +353,5 @@ impl Reader<'_> {
             return self.track.line_towards(target, direction, words.rapid).map_err(whole);
         }
         self.track.line(target, abc, words.rapid).map_err(whole)
-    }
-
-    /// `RL` and `RR`: from this move on.
-    fn compensate(&mut self, left: bool, words: &MoveWords, kind: &str) -> Result<(), NcProblem> {
-        if self.modes.compensated == Some(left) && self.track.compensates() {
-            return Ok(());
-        }
-        if !matches!(kind, "L" | "LP") || words.rapid && words.machine {
-            return Err(NcProblem::syntax(
-                "cutter compensation begins with a straight line: expected RL or RR in L or LP before this block",
-            ));
-        }
-        if self.uncertain && self.track.known().is_none() {
-            return Ok(());
-        }
-        let Some(radius) = self.cutter_radius() else {
-            let Some(tool) = self.track.tool else {
-                return Err(NcProblem::syntax(
-                    "cutter compensation without a tool: expected TOOL CALL before it",
-                ));
-            };
-            return Err(NcProblem::syntax(format!(
-                "the radius of tool {tool} for cutter compensation is not known: expected it in the tool table, or TOOL DEF {tool} L… R…"
-            )));
-        };
-        self.modes.compensated = Some(left);
-        let side = CompensationSettings {
-            left: left == (radius >= 0.0),
-            radius: radius.abs(),
-            corners: Corners::Arcs,
-            beside_next: true,
-            round_ends: false,
-            tangent: 1e-6,
-        };
-        self.track.compensate(side, self.modes.plane)
-    }
-
-    /// The radius of the tool with the oversize of its call.
-    pub(super) fn cutter_radius(&self) -> Option<f64> {
-        let tool = self.track.tool?;
-        let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
-        let table = table
-            .or(self.options.diameters.get(&tool).copied())
-            .map(|diameter| 0.5 * diameter);
-        Some(self.modes.radii.get(&tool).copied().or(table)? + self.modes.oversize)
     }
 }

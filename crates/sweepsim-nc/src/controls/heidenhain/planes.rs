@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::line::{self, Line};
 use crate::machines::WorkFrame;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// The cycles of frames, by their first part (`7.1` is part 1 of 7).
@@ -28,10 +29,7 @@ impl Reader<'_> {
             7 => {
                 for token in words {
                     let here = |problem| (problem, token.span.clone());
-                    let (relative, rest) = match token.text.strip_prefix('I') {
-                        Some(rest) => (true, rest),
-                        None => (false, token.text.as_str()),
-                    };
+                    let (relative, rest) = line::relative(&token.text);
                     let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
                         let problem = NcProblem::unsupported(
                             format!("{} in a datum shift is", token.text),
@@ -63,10 +61,7 @@ impl Reader<'_> {
             10 => {
                 for token in words {
                     let here = |problem| (problem, token.span.clone());
-                    let (relative, rest) = match token.text.strip_prefix('I') {
-                        Some(rest) => (true, rest),
-                        None => (false, token.text.as_str()),
-                    };
+                    let (relative, rest) = line::relative(&token.text);
                     let Some(angle) = rest.strip_prefix("ROT") else {
                         return Err(here(NcProblem::syntax(format!(
                             "{} here: expected ROT with an angle",
@@ -106,16 +101,62 @@ impl Reader<'_> {
                         )));
                     }
                 };
-                let first = *self.frames.preset.get_or_insert(number);
-                if first != number {
-                    return Err(whole(NcProblem::unsupported(
-                        format!("preset {number} after preset {first} is"),
-                        "only the machine knows the distance between them; expected one preset",
-                    )));
-                }
+                let expected = "a whole number from 0 to 999";
+                self.frames.work.active = NcProblem::whole("Q339", number, 0..=999, expected).map_err(whole)?;
             }
         }
         self.apply_frames().map_err(|problem| (problem, line.all()))
+    }
+
+    /// `STAY`: the angles that turn the tool to the plane are in Q120 to Q122 for the blocks that follow.
+    fn keep_angles(&mut self, normal: [f64; 3], line: &Line) -> Result<(), NcProblem> {
+        /// How many blocks behind it are looked at for the letters of the axes.
+        const AHEAD: usize = 12;
+        let uses = |name: &str| {
+            let letter = if name == "Q121" { 'B' } else { 'A' };
+            let ahead = (0..AHEAD).filter_map(|skipped| self.following_after(skipped));
+            let uses = |line: &Line| {
+                let mut words = line.tokens.iter().map(|token| &token.text);
+                words.any(|word| word.starts_with(letter) && word.ends_with(name))
+            };
+            ahead.take_while(|line| line.word(0) != "PLANE").any(|line| uses(&line))
+        };
+        let tilting = match (uses("Q120"), uses("Q121")) {
+            (false, false) => return Ok(()),
+            (true, _) => 0,
+            (false, true) => 1,
+        };
+        if !self.track.driver.knows_rotaries() {
+            let mut abc = [0.0; 3];
+            abc[tilting] = 1.0;
+            self.track.driver.rotaries(abc)?;
+            let (name, ready) = if tilting == 0 {
+                ("A and C", "trunnion-ac")
+            } else {
+                ("B and C", "trunnion-bc")
+            };
+            self.track.assume(Assumption::new(
+                "the machine's rotary axes, for Q120 to Q122 after PLANE … STAY",
+                format!("{name}, as those of {ready}"),
+                "--machine",
+            ));
+        }
+        let positive = ["SEQ+", "SEQ-"].map(|word| line.tokens.iter().any(|token| token.text == word));
+        let near = |sign: f64| {
+            let mut near = self.track.abc;
+            near[tilting] = sign * 90.0;
+            near
+        };
+        let near = match positive {
+            [true, _] => near(1.0),
+            [_, true] => near(-1.0),
+            _ => self.track.abc,
+        };
+        let abc = self.track.driver.angles(normal, near)?;
+        for (parameter, angle) in ["Q120", "Q121", "Q122"].into_iter().zip(abc) {
+            self.parameters.set(parameter, angle)?;
+        }
+        Ok(())
     }
 
     /// `PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX`, `PLANE EULER`, `PLANE VECTOR`, `PLANE RESET`.
@@ -193,6 +234,7 @@ impl Reader<'_> {
         if tilt.is_none() {
             self.control(self.modes.tip_control).map_err(whole)?;
         } else if !turns {
+            self.keep_angles(normal, line).map_err(whole)?;
             self.track
                 .note("PLANE … STAY turns no axis: the tool keeps its direction");
         }

@@ -1,7 +1,7 @@
 //! Tools, stock and M codes.
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::line::{self, Line};
 use crate::drive::Coordinates;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::text::error::{Located, NcProblem};
@@ -18,10 +18,7 @@ impl Reader<'_> {
             }
         };
         for token in &line.tokens[3..] {
-            let (relative, rest) = match token.text.strip_prefix('I') {
-                Some(rest) => (true, rest),
-                None => (false, token.text.as_str()),
-            };
+            let (relative, rest) = line::relative(&token.text);
             let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
                 continue;
             };
@@ -56,8 +53,8 @@ impl Reader<'_> {
                 }
                 _ if position == 0 && text.starts_with('"') => {
                     let name = text.trim_matches('"').to_owned();
-                    let next = self.tools.len() as u32 + 1;
-                    let number = *self.tools.entry(name.clone()).or_insert(next);
+                    let next = self.tools.values().max().map_or(1, |most| most + 1);
+                    let number = *self.tools.entry(text.to_owned()).or_insert(next);
                     if number == next {
                         self.track.note(format!("tool {name:?} is taken as T{number}"));
                     }
@@ -166,13 +163,13 @@ impl Reader<'_> {
                     let reduced = self.track.abc.map(|angle| angle % 360.0);
                     self.track.abc = reduced;
                 }
-                89 | 97 | 98 | 101..=104 | 107 | 108 | 130 | 138 | 140 | 141 => {
+                89 | 97 | 98 | 101..=104 | 107 | 108 | 130 | 138 | 141 => {
                     let problem =
                         NcProblem::unsupported(format!("M{code} is"), "the path of the tool would be unknown");
                     return Err((problem, token.span.clone()));
                 }
                 // Machine coordinates are read with the move; others change no geometry.
-                90..=92 | 109..=118 | 120 | 124 | 134..=137 | 144 | 145 | 148 | 149 | 197 => {}
+                90..=92 | 109..=118 | 120 | 124 | 134..=137 | 140 | 144 | 145 | 148 | 149 | 197 => {}
                 _ => self.track.note(format!("M{code} is not understood: ignored")),
             }
             if matches!(code, 13 | 14) {

@@ -19,12 +19,8 @@ impl Reader<'_> {
         let [u, v, _] = plane;
         let unit = self.modes.unit();
         let turns = words.plain("TURN").unwrap_or(0.0);
-        if turns.fract() != 0.0 || !(0.0..=999.0).contains(&turns) {
-            return Err((
-                NcProblem::value("TURN", turns, "a whole number from 0 to 999"),
-                words.span("TURN"),
-            ));
-        }
+        NcProblem::whole("TURN", turns, 0..=999, "a whole number from 0 to 999")
+            .map_err(|problem| (problem, words.span("TURN")))?;
         let ends = (start, target);
         let Motion::Arc { counter_clockwise } = self.modes.motion else {
             if self.modes.motion == Motion::Tangential {

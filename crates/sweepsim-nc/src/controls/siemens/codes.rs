@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::cycles::hole_cycle;
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
+use super::milling::workpiece;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
-use crate::drive::{Coordinates, Corners};
+use crate::drive::{Coordinates, Corners, Cycle};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::text::error::{Located, NcProblem};
@@ -37,9 +38,9 @@ impl Reader<'_> {
             19 => self.modes.plane = [1, 2, 0],
             25 | 26 => action.other = true,
             53 | 153 => action.machine = true,
-            54..=57 => self.frames.active = value as u32 - 53,
-            500 => self.frames.active = 0,
-            505..=599 => self.frames.active = value as u32 - 500,
+            54..=57 => return self.select_offset(value as u32 - 53),
+            500 => return self.select_offset(0),
+            505..=599 => return self.select_offset(value as u32 - 500),
             70 | 700 => self.modes.inch = true,
             71 | 710 => self.modes.inch = false,
             74 | 75 => action.home = true,
@@ -115,7 +116,15 @@ impl Reader<'_> {
                 let values: Vec<_> = values.into_iter().map(|value| value.map(number)).collect();
                 self.swivel(&values).map_err(here)?;
             }
-            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" => {}
+            "WORKPIECE" => {
+                let values = self.values(arguments)?;
+                self.track.program.stock = workpiece(&values, self.modes.unit());
+                if self.track.program.stock.is_none() {
+                    self.track
+                        .note("a WORKPIECE other than a BOX with absolute sides (112) is left out");
+                }
+            }
+            "CYCLE832" | "SETMS" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
                 let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
@@ -152,7 +161,9 @@ impl Reader<'_> {
             _ => (name, arguments, self.modal_word(span)),
         };
         let values = self.values(arguments)?;
-        if name.starts_with("CYCLE") {
+        if name.starts_with("CYCLE")
+            || matches!(name, "POCKET3" | "POCKET4" | "SLOT1" | "LONGHOLE" | "HOLES1" | "HOLES2")
+        {
             let numbers: Vec<Option<f64>> = values
                 .iter()
                 .map(|value| match value {
@@ -160,14 +171,18 @@ impl Reader<'_> {
                     _ => None,
                 })
                 .collect();
-            let cycle = hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?;
+            self.track.use_offset(&mut self.frames.work).map_err(here)?;
+            if self.places(name, &numbers).map_err(here)? || self.mill(name, &numbers).map_err(here)? {
+                return Ok(());
+            }
+            let cycle = Cycle::Hole(hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?);
             if modal {
                 self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
                 return Ok(());
             }
             return self
                 .track
-                .hole_here(&cycle, self.modes.plane, self.uncertain)
+                .cycle_here(&cycle, self.modes.plane, self.uncertain)
                 .map_err(here);
         }
         if !self.knows(name) {
@@ -184,12 +199,9 @@ impl Reader<'_> {
             self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
         } else {
             let times = words.plain("P").unwrap_or(1.0);
-            if !(1.0..=9999.0).contains(&times) || times.fract() != 0.0 {
-                return Err((
-                    NcProblem::value("the number of calls P", times, "a whole number from 1 to 9999"),
-                    words.span("P"),
-                ));
-            }
+            let expected = "a whole number from 1 to 9999";
+            let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
+                .map_err(|problem| (problem, words.span("P")))?;
             self.pending = Some((name.to_owned(), values, times as usize));
         }
         Ok(())

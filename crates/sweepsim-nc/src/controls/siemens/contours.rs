@@ -41,7 +41,7 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool's edge, with its allowance.
-    fn cutter_radius(&self) -> Result<f64, NcProblem> {
+    pub(super) fn cutter_radius(&mut self) -> Result<f64, NcProblem> {
         let edge = self.modes.edge;
         if edge == 0 {
             return Ok(self.modes.allowance);
@@ -51,14 +51,19 @@ impl Reader<'_> {
                 "cutter compensation without a tool: expected T before it",
             ));
         };
-        let own = self.globals.get(&format!("$TC_DP6[{tool}][{edge}]"));
+        let own = self.globals.get(&format!("$TC_DP6[{tool}][{edge}]")).cloned();
         let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
         let table = table
             .or(self.options.diameters.get(&tool).copied())
             .filter(|_| edge == 1);
         let radius = match (own, table) {
-            (Some(Value::Number(radius)), _) => *radius,
+            (Some(Value::Number(radius)), _) => radius,
             (_, Some(diameter)) => 0.5 * diameter,
+            _ if edge == 1
+                && let Some(diameter) = self.assume_tool_diameter(tool) =>
+            {
+                0.5 * diameter
+            }
             _ => {
                 return Err(NcProblem::syntax(format!(
                     "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or \
@@ -67,6 +72,11 @@ impl Reader<'_> {
             }
         };
         Ok(radius + self.modes.allowance)
+    }
+
+    fn assume_tool_diameter(&mut self, tool: u32) -> Option<f64> {
+        let (register, unit) = (format!("the radius of T{tool} D1"), self.modes.unit());
+        self.track.assume_diameter(&register, &format!("D{tool}"), unit, false)
     }
 
     /// Words of corners.

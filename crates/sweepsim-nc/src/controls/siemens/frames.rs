@@ -3,32 +3,22 @@
 use super::interpreter::Reader;
 use super::state::{FrameChange, Operation};
 use super::words::Words;
-use crate::drive::Coordinates;
+use crate::drive::{Coordinates, WorkOffset};
 use crate::machines::WorkFrame;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     /// Brings all frames into effect.
     pub(super) fn apply_frames(&mut self) -> Result<(), NcProblem> {
-        self.track.set_frame(self.frames.swivel.then(&self.frames.programmed))
+        let offset = self.frames.work.frame();
+        self.track
+            .set_frame(offset.then(&self.frames.swivel).then(&self.frames.programmed))
     }
 
-    /// Before a move in the part's frame: the distance between two work offsets is not known.
-    pub(super) fn use_offset(&mut self) -> Result<(), NcProblem> {
-        let active = self.frames.active;
-        if *self.frames.first.get_or_insert(active) == active {
-            return Ok(());
-        }
-        let name = |offset| match offset {
-            0 => "G500".to_owned(),
-            1..=4 => format!("G{}", 53 + offset),
-            _ => format!("G{}", 500 + offset),
-        };
-        let first = name(self.frames.first.unwrap_or(active));
-        Err(NcProblem::unsupported(
-            format!("moves in {} after moves in {first} are", name(active)),
-            "only the machine knows the distance between them; expected one work offset",
-        ))
+    /// Another work offset: the tool stays where it is.
+    pub(super) fn select_offset(&mut self, number: WorkOffset) -> Result<(), NcProblem> {
+        self.frames.work.active = number;
+        self.apply_frames()
     }
 
     pub(super) fn operate(&mut self, operation: Operation, words: &Words) -> Result<(), Located> {
@@ -77,14 +67,7 @@ impl Reader<'_> {
             return self.plane_coordinates();
         }
         let mode = get(3);
-        if mode.fract() != 0.0 || !(0.0..=255.0).contains(&mode) {
-            return Err(NcProblem::value(
-                "_MODE of CYCLE800",
-                mode,
-                "a whole number from 0 to 255",
-            ));
-        }
-        let mode = mode as u32;
+        let mode = NcProblem::whole("_MODE of CYCLE800", mode, 0..=255, "a whole number from 0 to 255")?;
         if mode >> 6 != 0 {
             return Err(NcProblem::unsupported(
                 "CYCLE800 with solid or projection angles, or with angles of rotary axes, is",

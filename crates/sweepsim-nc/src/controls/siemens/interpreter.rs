@@ -59,7 +59,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         modes: Modes::new(options),
-        frames: Frames::default(),
+        frames: Frames::new(options),
         options,
         library,
         routines: Vec::new(),
@@ -72,13 +72,16 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     };
     reader.add(Rc::clone(text), 0);
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
+    reader.track.describe_tools(text);
     run::run(&mut reader, text, options)?;
+    let names = std::mem::take(&mut reader.modes.tools);
     let mut program = reader.track.finish();
     program.format = Some(Format::Gcode);
     program.controller = Some(Controller::Siemens);
     let comments = comments::read(text, program.units.in_mm());
     program.tools = comments.tools;
-    program.stock = comments.stock;
+    comments::name_tools(&mut program, &names);
+    program.stock = program.stock.or(comments.stock);
     Ok(program)
 }
 

@@ -1,9 +1,9 @@
 //! Programs of Siemens Sinumerik 840D.
 //!
 //! Read: `G0 G1 G2 G3` and `CIP` (centres `I J K`, also `AC(…)`; `CR=`, `AR=`, `TURN=`), `G17 G18 G19`, `G90 G91` with `AC IC DC ACP ACN`,
-//! `G70 G71 G700 G710`, one work offset (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153` (left out, the path breaks), programmable frames
+//! `G70 G71 G700 G710`, work offsets (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153` (left out, the path breaks), programmable frames
 //! (`TRANS ROT SCALE MIRROR` and those with `A`), `CYCLE800` axis by axis, `TRAORI`/`TRAFOOF`, tool vectors `A3= B3= C3=`, drilling cycles
-//! `CYCLE81`…`86`, `89`, `840` alone or after `MCALL`, cutter compensation (`G41 G42 G40`, `G450 G451`, `NORM KONT`, `OFFN`), `RND RNDM CHF CHR`,
+//! `CYCLE81`…`86`, `89`, `840` alone or after `MCALL`, patterns and milling cycles, cutter compensation (`G41 G42 G40`, `G450 G451`, `NORM KONT`, `OFFN`), `RND RNDM CHF CHR`,
 //! `CT`, polar coordinates (`G110 G111 G112`, `AP RP`), tools by number or name, `R` parameters, `DEF`, expressions, jumps, `IF WHILE FOR LOOP
 //! REPEAT`, and subprograms with parameters, by name from the same archive or from a file beside.
 //!
@@ -17,6 +17,7 @@ mod cycles;
 mod frames;
 mod interpreter;
 mod language;
+mod milling;
 mod moves;
 mod state;
 mod variables;

@@ -102,7 +102,7 @@ impl Reader<'_> {
             // Only rotary axes turn, at a place that is not known.
             return self.track.turn_unknown(abc).map_err(here);
         }
-        self.use_offset().map_err(here)?;
+        self.track.use_offset(&mut self.frames.work).map_err(here)?;
         let cuts = self.modes.motion != Motion::Rapid;
         let polar = words.any(&["AP", "RP"]).is_some();
         let Some(target) = self.target(words, cuts)? else {
@@ -134,7 +134,7 @@ impl Reader<'_> {
                 Some((depth, _)) if depth != self.depth() => {}
                 Some((_, Modal::Cycle(cycle))) => self
                     .track
-                    .hole_here(&cycle, self.modes.plane, self.uncertain)
+                    .cycle_here(&cycle, self.modes.plane, self.uncertain)
                     .map_err(here)?,
                 Some((_, Modal::Program(name, values))) => self.pending = Some((name, values, 1)),
                 None => {}
@@ -188,8 +188,17 @@ impl Reader<'_> {
 
     /// Where the block ends, in the frame; `None` if it is not known yet.
     fn target(&mut self, words: &Words, cuts: bool) -> Result<Option<[f64; 3]>, Located> {
-        let mut xyz = self.track.xyz;
         let polar = self.polar(words)?;
+        // As in other readers: what the program has not said is 0.
+        let needed = |k: usize| {
+            let word = words.get(LINEAR[k]);
+            let relative = word.is_some_and(|word| self.relative(word));
+            let given = word.is_some() && matches!(self.modes.motion, Motion::Feed);
+            polar[k].is_none() && (relative || cuts && !given)
+        };
+        let needed = [0, 1, 2].map(needed);
+        let known = self.uncertain || self.track.complete(|k| needed[k]);
+        let mut xyz = self.track.xyz;
         for (k, name) in LINEAR.into_iter().enumerate() {
             let word = words.get(name);
             if word
@@ -199,16 +208,6 @@ impl Reader<'_> {
                 return Err((problem, words.span(name)));
             }
             let relative = word.is_some_and(|word| self.relative(word));
-            if self.track.xyz[k].is_none()
-                && polar[k].is_none()
-                && (relative || cuts && (word.is_none() || !matches!(self.modes.motion, Motion::Feed)))
-                && !self.uncertain
-            {
-                // As in other readers: what the program has not said is 0.
-                self.track.note(format!("{name} is not known here: taken as 0"));
-                self.track.xyz[k] = Some(0.0);
-                xyz[k] = Some(0.0);
-            }
             if polar[k].is_some() {
                 xyz[k] = polar[k];
             }
@@ -220,6 +219,10 @@ impl Reader<'_> {
                     Some(value)
                 };
             }
+        }
+        if !known {
+            self.track.xyz = xyz;
+            return Ok(None);
         }
         if let [Some(x), Some(y), Some(z)] = xyz {
             if self.track.known().is_none()

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::language::expression::Value;
-use crate::drive::{Corners, HoleCycle};
+use crate::drive::{Corners, Cycle, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
 use crate::model::event::Spindle;
 use crate::model::read_options::ReadOptions;
@@ -64,7 +64,7 @@ pub(super) struct Modes {
 /// What `MCALL` calls.
 #[derive(Clone, Debug)]
 pub(super) enum Modal {
-    Cycle(HoleCycle),
+    Cycle(Cycle),
     Program(String, Vec<Value>),
 }
 
@@ -97,18 +97,35 @@ pub(super) enum PoleFrom {
     Pole,
 }
 
+/// The name of a work offset.
+fn offset_name(number: WorkOffset) -> String {
+    match number {
+        0 => "G500".to_owned(),
+        1..=4 => format!("G{}", 53 + number),
+        _ => format!("G{}", 500 + number),
+    }
+}
+
 /// The frames in effect.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Frames {
-    /// The work offset whose frame is the part's: the first one that a move uses.
-    pub first: Option<u32>,
-    /// The one in effect (`G500` is 0).
-    pub active: u32,
+    pub work: WorkOffsets,
     /// Set by `CYCLE800`.
     pub swivel: WorkFrame,
     pub swivelled: bool,
     /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
     pub programmed: WorkFrame,
+}
+
+impl Frames {
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            work: WorkOffsets::new(offset_name, 100, options),
+            swivel: WorkFrame::default(),
+            swivelled: false,
+            programmed: WorkFrame::default(),
+        }
+    }
 }
 
 /// An operation on the programmable frame.

@@ -232,13 +232,8 @@ impl Reader<'_> {
             self.modes.edge = offset as u32;
         }
         if let Some(word) = words.get("T") {
-            if !(0.0..=f64::from(u32::MAX)).contains(&word.value) || word.value.fract() != 0.0 {
-                return Err((
-                    NcProblem::value("a tool number", word.value, "a whole number"),
-                    word.span.clone(),
-                ));
-            }
-            self.select(word.value as u32)
+            NcProblem::whole("a tool number", word.value, 0..=u32::MAX, "a whole number")
+                .and_then(|tool| self.select(tool))
                 .map_err(|problem| (problem, word.span.clone()))?;
         }
         self.corner_words(words, action)?;

@@ -1,12 +1,14 @@
 //! Codes that set coordinates instead of moving to them.
 
 use super::interpreter::Reader;
+use crate::drive::{Placed, WorkOffset};
 use crate::gcode::codes::{Code, MotionMode};
-use crate::gcode::offsets::{EXTENDED, Placed, WorkOffset, known};
+use crate::gcode::offsets::{EXTENDED, known};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::machines::WorkFrame;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// Whether a block has a rotary word other than 0.
@@ -27,8 +29,8 @@ impl Reader {
         let here_unknown = (0..3).any(|k| words[k].is_some() && self.track.xyz[k].is_none());
         match code {
             // An earlier problem has made the position unknown; see `Reader::go_on`.
-            Code::SetOffsets | Code::ShiftHere if self.uncertain && here_unknown => {}
-            Code::RestoreShift if self.uncertain => {}
+            Code::SetOffsets | Code::ShiftHere if self.seen.uncertain && here_unknown => {}
+            Code::RestoreShift if self.seen.uncertain => {}
             Code::Ignored(note) => self.track.note(note),
             Code::Length(code) => self.set_length(code, block)?,
             Code::EndCurve => self.end_curve()?,
@@ -36,24 +38,28 @@ impl Reader {
             Code::Stretch(code) => self.stretch(code, block)?,
             Code::WorkOffset(index) => self.select(index)?,
             Code::WorkOffsetByWord => match block.get('P') {
-                Some(p) if p.fract() == 0.0 && (1.0..=999.0).contains(&p) => self.select(EXTENDED + p as u32)?,
+                Some(p) => {
+                    let p = NcProblem::whole("P of a work offset", p, 1..=999, "a whole number from 1 on")?;
+                    self.select(EXTENDED + p)?;
+                }
                 // G54.1 is G54 on some controls.
                 None => self.select(0)?,
-                Some(p) => return Err(NcProblem::value("P of a work offset", p, "a whole number from 1 on")),
             },
             Code::Home { second } => self.home(usize::from(second), block)?,
             Code::SetHome { second } => {
                 if let [Some(x), Some(y), Some(z)] = self.machine_position() {
-                    self.homes[usize::from(second)] = Some([x, y, z]);
+                    self.offsets.homes[usize::from(second)] = Some([x, y, z]);
                 }
             }
             Code::SetOffsets => self.set_offsets(block, words)?,
+            Code::ReturnLevel => self.modes.return_level = words[2],
+            Code::Probe => self.probe(words.map(|word| word.is_some())),
             Code::LocalShift => {
                 if turns(block) {
                     return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
                 }
                 self.reframe(|reader| {
-                    if reader.controller == Some(Controller::LinuxCnc) {
+                    if reader.rules.controller == Some(Controller::LinuxCnc) {
                         let shift = reader.offsets.shift;
                         let shift = std::array::from_fn(|k| words[k].unwrap_or(shift[k]));
                         reader.offsets.set_shift(shift);
@@ -120,11 +126,19 @@ impl Reader {
         Ok(())
     }
 
+    /// Probing goes to where the part is: nothing is cut, and where it ends only the machine knows.
+    fn probe(&mut self, axes: [bool; 3]) {
+        let taken = "left out; where the tool is then is known again from the next move that gives its axes";
+        self.track
+            .assume(Assumption::new("what a probe finds", taken, "a program without probing").harmless());
+        self.track.leave(axes);
+    }
+
     fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {
-        if index != self.offsets.active {
+        if index != self.offsets.work.active {
             self.refuse_compensation("a change of the work offset")?;
         }
-        self.reframe(|reader| reader.offsets.active = index)?;
+        self.reframe(|reader| reader.offsets.work.active = index)?;
         self.trace_offsets();
         Ok(())
     }
@@ -133,17 +147,12 @@ impl Reader {
     fn set_offsets(&mut self, block: &Block, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
         let p = block.get('P').unwrap_or(0.0);
         let fanuc = self.fanuc();
-        let l = match block.get('L') {
-            Some(l) if l.fract() == 0.0 && (0.0..=99.0).contains(&l) => l as u32,
-            Some(l) => return Err(NcProblem::value("L of G10", l, "a whole number from 0 to 99")),
-            None => 0,
-        };
+        let l = block.get('L').unwrap_or(0.0);
+        let l = NcProblem::whole("L of G10", l, 0..=99, "a whole number from 0 to 99")?;
         match l {
             2 | 20 => {
-                if p.fract() != 0.0 || !(0.0..=if fanuc { 300.0 } else { 9.0 }).contains(&p) {
-                    return Err(NcProblem::value("P of G10", p, "a whole number from 0 to 9"));
-                }
-                let p = p as u32;
+                let most = if fanuc { 300 } else { 9 };
+                let p = NcProblem::whole("P of G10", p, 0..=most, "a whole number from 0 to 9")?;
                 if l == 20 && !fanuc {
                     self.check_angles(block, "G10 L20")?;
                     return self.place_here(p, words);
@@ -165,15 +174,15 @@ impl Reader {
                     }
                     let index = match (p, l) {
                         (p, 20) => EXTENDED + p,
-                        (0, _) => reader.offsets.active,
+                        (0, _) => reader.offsets.work.active,
                         (p, _) => p - 1,
                     };
-                    let before = reader.offsets.placed(index).unwrap_or_default();
+                    let before = reader.offsets.work.placed(index).unwrap_or_default();
                     let placed = Placed {
                         origin: std::array::from_fn(|k| added(before.origin[k], words[k])),
                         turn: turn.unwrap_or(before.turn),
                     };
-                    reader.offsets.place(index, placed);
+                    reader.offsets.work.place(index, placed);
                 })?;
                 self.trace_offsets();
                 Ok(())
@@ -189,8 +198,8 @@ impl Reader {
 
     /// G10 L20: gives the current position the given coordinates in a work offset.
     fn place_here(&mut self, p: u32, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
-        let index = if p == 0 { self.offsets.active } else { p - 1 };
-        let mut placed = self.offsets.placed(index).unwrap_or_default();
+        let index = if p == 0 { self.offsets.work.active } else { p - 1 };
+        let mut placed = self.offsets.work.placed(index).unwrap_or_default();
         let local = self.modes.local_map();
         if local != WorkFrame::default() {
             return Err(NcProblem::unsupported(
@@ -226,7 +235,7 @@ impl Reader {
                 placed.origin[k] = known(here[k])? - from[k];
             }
         }
-        self.reframe(|reader| reader.offsets.place(index, placed))?;
+        self.reframe(|reader| reader.offsets.work.place(index, placed))?;
         self.trace_offsets();
         Ok(())
     }
@@ -297,8 +306,8 @@ impl Reader {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
         let any = block.first("XYZABC").is_some();
         let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.track.xyz[k].is_some());
-        if (any || self.track.trace.is_some()) && known && !self.uncertain {
-            self.offsets.use_active()?;
+        if (any || self.track.trace.is_some()) && known && !self.seen.uncertain {
+            self.track.use_offset(&mut self.offsets.work)?;
             self.go(MotionMode::Rapid, block)?;
         }
         let named = |k: usize| !any || words[k].is_some();
@@ -307,9 +316,20 @@ impl Reader {
                 *angle = 0.0;
             }
         }
-        if let (Some(home), true, [Some(x), Some(y), Some(z)]) =
-            (self.homes[which], self.machine_known, self.control_position())
-        {
+        let assumed = (which == 0 && self.offsets.work.is_placed()).then_some([0.0; 3]);
+        if let (Some(home), true, [Some(x), Some(y), Some(z)]) = (
+            self.offsets.homes[which].or(assumed),
+            self.offsets.knows_machine(),
+            self.control_position(),
+        ) {
+            if self.offsets.homes[which].is_none() {
+                self.track.assume(Assumption::new(
+                    "the machine's home (G28)",
+                    "the zero of its coordinates",
+                    "the control's variables from #5161",
+                ));
+            }
+            self.track.use_offset(&mut self.offsets.work)?;
             let now = [x, y, z];
             return self.go_to_control(std::array::from_fn(|k| if named(k) { home[k] } else { now[k] }), true);
         }

@@ -22,12 +22,12 @@ impl Reader {
     /// The position of the machine that the control counts: the tip's plus the length offset.
     pub(crate) fn control_position(&self) -> [Option<f64>; 3] {
         let there = self.frame_map().partial(self.track.xyz);
-        std::array::from_fn(|k| there[k].map(|at| at + self.length.offset[k]))
+        std::array::from_fn(|k| there[k].map(|at| at + self.tools.length.offset[k]))
     }
 
     /// The position in machine coordinates, if those are known.
     pub(crate) fn machine_position(&self) -> [Option<f64>; 3] {
-        if self.machine_known || self.offsets.active_is_placed() {
+        if self.offsets.knows_machine() {
             self.control_position()
         } else {
             [None; 3]
@@ -38,8 +38,10 @@ impl Reader {
     fn tip_shift(&self) -> f64 {
         let own = self.track.tool.and_then(|tool| self.tools.get(tool));
         match own {
-            Some(own) if self.length.used && (self.length.known || self.length.offset == [0.0; 3]) => {
-                self.length.offset[2] - own.offset[2]
+            Some(own)
+                if self.tools.length.used && (self.tools.length.known || self.tools.length.offset == [0.0; 3]) =>
+            {
+                self.tools.length.offset[2] - own.offset[2]
             }
             // Programs are written for the tip.
             _ => 0.0,
@@ -58,18 +60,18 @@ impl Reader {
 
     /// Changes offsets; the machine stays where it is.
     pub(crate) fn reframe(&mut self, change: impl FnOnce(&mut Self)) -> Result<(), NcProblem> {
-        let (before, length) = (self.frame_map(), self.length.offset);
+        let (before, length) = (self.frame_map(), self.tools.length.offset);
         change(self);
         let after = self.frame_map();
         let mut xyz = self.track.xyz;
-        if before != after || length != self.length.offset {
+        if before != after || length != self.tools.length.offset {
             self.refuse_compensation("a change of coordinates")?;
             let Some(inverse) = after.inverse() else {
                 return Err(NcProblem::syntax("these coordinates have no inverse: a scale is 0"));
             };
             let there = before.partial(xyz);
             xyz = inverse.partial(std::array::from_fn(|k| {
-                there[k].map(|at| at + length[k] - self.length.offset[k])
+                there[k].map(|at| at + length[k] - self.tools.length.offset[k])
             }));
         }
         // Where lengths become known, the tip may turn out to be elsewhere.
@@ -96,10 +98,10 @@ impl Reader {
 
     pub(crate) fn trace_offsets(&mut self) {
         let unit = self.unit();
-        let placed = self.offsets.placed(self.offsets.active).unwrap_or_default();
+        let placed = self.offsets.work.placed(self.offsets.work.active).unwrap_or_default();
         self.trace([
             Canonical::WorkOffset {
-                index: self.offsets.active + 1,
+                index: self.offsets.work.active + 1,
                 origin: placed.origin.map(|x| x / unit),
             },
             Canonical::Shift(self.offsets.shift.map(|x| x / unit)),

@@ -1,20 +1,22 @@
 //! Executes a program block by block.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::rc::Rc;
 
-use super::control::calls::{CallLevel, SourceLine};
-use super::control::lookup::folders;
-use super::control::variables::{Store, given_work_offsets};
+use super::control::calls::{Calls, SourceLine};
+use super::control::lookup::Texts;
+use super::control::variables::Store;
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
-use crate::drive::{Canonical, ProgramPlace, Sense, Trace, Track};
-use crate::gcode::flow::keywords::{Label, after_letter, is_statement, skip_head};
+use crate::drive::{Canonical, ProgramPlace, Trace, Track};
+use crate::gcode::dialect::Rules;
+use crate::gcode::flow::keywords::{after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
-use crate::gcode::modes::Modes;
+use crate::gcode::modes::{Modes, TipControl};
 use crate::gcode::offsets::Offsets;
+use crate::gcode::okuma;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
@@ -36,69 +38,39 @@ pub(crate) enum Step {
     End,
 }
 
-/// The length offset in effect.
-#[derive(Default)]
-pub(crate) struct LengthOffset {
-    pub offset: [f64; 3],
-    /// Whether it is a known one.
-    pub known: bool,
-    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
-    pub used: bool,
-}
-
-/// What has switched tip control on.
-#[derive(Default)]
-pub(crate) struct TipControl {
-    /// The machine's kinematics (M428).
-    pub kinematics: bool,
-    /// The length offset (G43.4).
-    pub by_length: bool,
-    /// G43.5: tool vectors.
-    pub vectors: bool,
-}
-
 /// The interpreter.
 pub(crate) struct Reader {
     pub track: Track,
+    pub rules: Rules,
+    pub texts: Texts,
+    pub calls: Calls,
     pub modes: Modes,
-    pub offsets: Offsets,
     pub variables: Store,
+    pub offsets: Offsets,
     pub tools: ToolTable,
-    pub controller: Option<Controller>,
-    /// Whether the control is given, not guessed: its own rules about missing and spare words then count.
-    pub strict: bool,
-    pub levels: Vec<CallLevel>,
-    /// The block of G66, and how deep in calls it is.
-    pub modal_macro: Option<(Block, usize)>,
-    pub sources: Vec<Rc<Source>>,
-    pub files: Vec<PathBuf>,
-    pub folders: Vec<PathBuf>,
-    pub looked_for: BTreeSet<Label>,
-    pub call_numbers: BTreeMap<(usize, usize, Option<u32>), u32>,
-    pub loop_ends: BTreeMap<SourceLine, Option<usize>>,
-    /// Where the last jump backwards led.
-    pub turned: Option<SourceLine>,
-    pub block_delete: bool,
-    pub lenient: bool,
-    /// Whether positions in machine coordinates are known: the control's variables were given.
-    pub machine_known: bool,
+    pub tip: TipControl,
+    pub pending: Pending,
+    pub seen: Seen,
+}
+
+/// What further blocks go on with.
+#[derive(Default)]
+pub(crate) struct Pending {
     /// The curve of G5.2 so far.
     pub nurbs: Option<Nurbs>,
     /// The plane of G68.2 so far, if it takes several blocks.
-    pub plane_blocks: Option<PlaneBlocks>,
+    pub plane: Option<PlaneBlocks>,
     /// The last move was one of G45 to G48.
     pub stretched: bool,
-    pub length: LengthOffset,
-    /// Selected by a T word, not yet in the spindle.
-    pub selected_tool: Option<u32>,
-    pub tool_changed: bool,
-    /// The homes of G28 and G30 in machine coordinates, as far as they are known.
-    pub homes: [Option<[f64; 3]>; 2],
-    pub tip: TipControl,
-    /// A program number has come.
+}
+
+/// What has come so far.
+#[derive(Default)]
+pub(crate) struct Seen {
+    /// A program number.
     pub numbered: bool,
     pub begun: bool,
-    /// After a problem: what the program has said so far is not fully known.
+    /// A problem: what the program has said is not fully known.
     pub uncertain: bool,
     /// The units of the first move.
     pub units: Option<Units>,
@@ -114,12 +86,15 @@ pub(crate) struct Input<'a> {
 pub(crate) struct Outcome {
     pub program: Result<Program, NcError>,
     pub trace: Vec<Canonical>,
+    /// Whether something was assumed.
+    assumed: bool,
 }
 
 pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
     let fail = |error| Outcome {
         program: Err(error),
         trace: Vec::new(),
+        assumed: false,
     };
     if let Err(error) = options.check() {
         return fail(error);
@@ -128,81 +103,63 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         let problem = NcProblem::value("the size of a program", input.text.len(), "less than 2 GB");
         return fail(NcError::new(problem, None));
     }
+    let read = |wear_alone| read_once(input, options, trace, wear_alone);
+    let outcome = read(false);
+    // Contours that cannot be offset by the tool's radius are those of the tool itself.
+    let assumed = outcome.assumed && outcome.program.is_err();
+    match assumed.then(|| read(true)) {
+        Some(other) if other.program.is_ok() => other,
+        _ => outcome,
+    }
+}
+
+/// `wear_alone`: registers D that nothing sets are 0.
+fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool) -> Outcome {
     let mut reader = Reader::new(input, options);
+    reader.tools.wear_alone = wear_alone;
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
+    let assumed = reader.track.assumes();
     let program = NcError::all(errors).map_or(Ok(()), Err);
     let program = program.and_then(|()| match options.lenient {
         true => Ok(()),
         false => reader.track.check_moves(input.text),
     });
     let program = program.map(|()| Program {
-        units: reader.units.unwrap_or_default(),
+        units: reader.seen.units.unwrap_or_default(),
         format: Some(Format::Gcode),
-        controller: reader.controller,
-        files: reader.files,
+        controller: reader.rules.controller,
+        files: reader.texts.files,
         ..reader.track.finish()
     });
-    Outcome { program, trace }
+    Outcome {
+        program,
+        trace,
+        assumed,
+    }
 }
 
 impl Reader {
     fn new(input: &Input, options: &ReadOptions) -> Self {
-        let unit = if options.inch { 25.4 } else { 1.0 };
-        let mut offsets = Offsets::default();
-        for (index, placed) in given_work_offsets(&options.variables, unit) {
-            offsets.place(index, placed);
-        }
-        let home = |first: u32| {
-            let value = |k: u32| options.variables.get(&(first + k)).map(|value| value * unit);
-            Some([value(0)?, value(1)?, value(2)?])
-        };
+        let rules = Rules::new(input.text, options);
         let mut reader = Self {
-            track: Track::new(
-                options,
-                match options.controller {
-                    Some(Controller::Haas | Controller::Fanuc) => Sense::Tool,
-                    _ => Sense::Part,
-                },
-            ),
+            track: Track::new(options, rules.sense()),
+            texts: Texts::new(input, options),
+            calls: Calls::default(),
             modes: Modes::new(options.inch),
-            offsets,
             variables: Store::new(&options.variables),
-            tools: ToolTable::new(&options.tool_offsets, &options.diameters),
-            controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
-            strict: options.controller.is_some(),
-            modal_macro: None,
-            levels: vec![CallLevel::default()],
-            sources: vec![Rc::new(Source::new(0, Rc::clone(input.text)))],
-            files: input.file.map(Path::to_owned).into_iter().collect(),
-            folders: folders(input.file, &options.subprograms),
-            looked_for: BTreeSet::new(),
-            call_numbers: BTreeMap::new(),
-            loop_ends: BTreeMap::new(),
-            turned: None,
-            block_delete: options.block_delete,
-            lenient: options.lenient,
-            machine_known: !options.variables.is_empty(),
-            nurbs: None,
-            plane_blocks: None,
-            stretched: false,
-            length: LengthOffset {
-                used: input.text.contains("G43") || input.text.contains("g43"),
-                ..LengthOffset::default()
-            },
-            selected_tool: None,
-            tool_changed: false,
-            homes: [home(5161), home(5181)],
+            offsets: Offsets::new(options),
+            tools: ToolTable::new(options, input.text),
             tip: TipControl {
                 kinematics: options.machine.tip_control,
                 ..TipControl::default()
             },
-            numbered: false,
-            begun: false,
-            uncertain: false,
-            units: None,
+            pending: Pending::default(),
+            seen: Seen::default(),
+            rules,
         };
+        reader.track.describe_tools(input.text);
         reader.update_frame();
         if let Some(start) = options.start {
             let xyz = reader.track.frame().inverse_point(start);
@@ -222,12 +179,12 @@ impl Reader {
             source: 0,
             line: leader,
         };
-        let mut source = Rc::clone(&self.sources[0]);
+        let mut source = Rc::clone(&self.texts.sources[0]);
         let mut block = Block::default();
         let mut left = most_blocks;
         loop {
             if here.line >= source.len() {
-                if here.source == 0 && self.levels.len() == 1 {
+                if here.source == 0 && self.calls.levels.len() == 1 {
                     break;
                 }
                 let problem = NcProblem::syntax("the file ends within a subprogram: expected M99, or `endsub`");
@@ -237,8 +194,8 @@ impl Reader {
             if left == 0 {
                 // Problems have made the loop's end unreachable, perhaps.
                 if errors.is_empty() {
-                    let to = self.turned.unwrap_or(here);
-                    let source = Rc::clone(&self.sources[to.source]);
+                    let to = self.calls.turned.unwrap_or(here);
+                    let source = Rc::clone(&self.texts.sources[to.source]);
                     let problem = NcProblem::value(
                         "the number of executed blocks",
                         most_blocks,
@@ -254,7 +211,7 @@ impl Reader {
                 Err((problem, span)) => {
                     self.go_on(&block);
                     let text = problem.to_string();
-                    if self.lenient {
+                    if self.rules.lenient {
                         self.track.note(format!("left out: {text}"));
                     } else if messages.insert(text) {
                         errors.push(self.error(problem, &source, here.line, span));
@@ -263,11 +220,14 @@ impl Reader {
                     Step::Next
                 }
             };
+            if self.variables.asks() {
+                self.say_unknown(source.line(here.line), matches!(step, Step::Jump(_)));
+            }
             match step {
                 Step::Next => here.line += 1,
                 Step::Jump(to) => {
                     if to.source != here.source {
-                        source = Rc::clone(&self.sources[to.source]);
+                        source = Rc::clone(&self.texts.sources[to.source]);
                     }
                     here = to;
                 }
@@ -288,18 +248,18 @@ impl Reader {
     }
 
     fn error(&self, problem: NcProblem, source: &Source, line: usize, span: std::ops::Range<usize>) -> NcError {
-        let files = (&self.files[..], source.file);
+        let files = (&self.texts.files[..], source.file);
         NcError::on_line(problem, (line + 1, source.line(line)), span, files)
     }
 
     /// Goes on after a problem, to find others: where the tool is now is not known.
     fn go_on(&mut self, block: &Block) {
-        self.uncertain = true;
-        self.nurbs = None;
-        self.plane_blocks = None;
+        self.seen.uncertain = true;
+        self.pending.nurbs = None;
+        self.pending.plane = None;
         self.track.leave([true; 3]);
         let cycle = matches!(self.modes.motion, Some(crate::gcode::codes::MotionMode::Cycle(_)));
-        if cycle || !self.lenient || block.has('G') {
+        if cycle || !self.rules.lenient || block.has('G') {
             self.modes.motion = None;
         }
     }
@@ -314,7 +274,7 @@ impl Reader {
         if !self.track.has_moved()
             && let Some(title) = title::of(line)
         {
-            self.begun = true;
+            self.seen.begun = true;
             block.clear();
             self.track.program.title.get_or_insert(title);
             return Ok(Step::Next);
@@ -325,24 +285,31 @@ impl Reader {
             Some(b'$' | b'{' | b'?' | b'!' | b'~') => return self.command(line, cursor),
             _ => {}
         }
-        if line.as_bytes().get(cursor.at) == Some(&b'/') && self.block_delete {
+        if line.as_bytes().get(cursor.at) == Some(&b'/') && self.rules.block_delete {
             self.track.note("optional blocks (`/`) are skipped");
             return Ok(Step::Next);
         }
+        if let Some(call) = okuma::call(line).filter(|_| self.rules.controller == Some(Controller::Okuma)) {
+            self.track.begin_block();
+            return self
+                .call_okuma(call)
+                .map(|()| Step::Next)
+                .map_err(|problem| (problem, 0..line.len()));
+        }
         if let Some(cursor) = after_letter(line) {
-            self.begun = true;
+            self.seen.begun = true;
             block.clear();
             return self.labelled(cursor, here);
         }
         skip_head(&mut cursor);
         if is_statement(cursor) {
-            self.begun = true;
+            self.seen.begun = true;
             block.clear();
             return self.statement(cursor, here);
         }
         words::read(line, self, block)?;
         if block.tape {
-            let ends = self.begun && self.levels.len() == 1;
+            let ends = self.seen.begun && self.calls.levels.len() == 1;
             return Ok(if ends { Step::End } else { Step::Next });
         }
         if let Some(message) = block.message.clone() {
@@ -354,7 +321,8 @@ impl Reader {
         if block.is_empty() && block.assignments.is_empty() {
             return Ok(Step::Next);
         }
-        self.begun = true;
+        self.seen.begun = true;
+        self.track.begin_block();
         self.perform(block, here)
     }
 }

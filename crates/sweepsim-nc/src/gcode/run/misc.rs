@@ -2,6 +2,7 @@
 
 use super::interpreter::{Reader, Step};
 use crate::gcode::codes::{self, Misc, SpindleTurning};
+use crate::gcode::okuma_title;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
@@ -23,7 +24,7 @@ impl Reader {
         }
         if let Some(word) = block.word('T') {
             let tool = Self::tool_number(word.value).map_err(|problem| (problem, word.span()))?;
-            self.selected_tool = Some(tool);
+            self.tools.selected = Some(tool);
             // Programs without a tool change name their tool by a T word alone.
             if self.track.tool.is_none() {
                 self.track.take_tool(Some(tool));
@@ -34,9 +35,12 @@ impl Reader {
             return Ok(Step::Next);
         }
         let mut step = Step::Next;
+        let okuma = self.rules.controller == Some(Controller::Okuma);
         for &word in block.words().iter().filter(|word| word.letter == 'M') {
             let at = |problem| (problem, word.span());
             match codes::m(word.value) {
+                // To the level of G71, or to R.
+                _ if okuma && matches!(word.value, 53.0 | 54.0) => self.modes.retract_to_plane = word.value == 54.0,
                 Misc::Harmless => {}
                 Misc::End => step = Step::End,
                 Misc::Stop => self.track.event(EventKind::Stop).map_err(at)?,
@@ -46,7 +50,7 @@ impl Reader {
                     self.turn_spindle(self.modes.spindle).map_err(at)?;
                 }
                 Misc::Coolant(coolant) => self.track.event(EventKind::Coolant(coolant)).map_err(at)?,
-                Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
+                Misc::ToolChange => self.change_tool(self.tools.selected).map_err(at)?,
                 Misc::SetTool => {
                     let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
                     self.change_tool(tool).map_err(at)?;
@@ -94,7 +98,7 @@ impl Reader {
 
     /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
     pub(crate) fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
-        let fanuc = matches!(self.controller, Some(Controller::Fanuc | Controller::Haas));
+        let fanuc = self.rules.fanuc();
         let seconds = match block.word('P') {
             Some(word) if fanuc && word.whole => word.value / 1000.0,
             Some(word) => word.value,
@@ -105,6 +109,10 @@ impl Reader {
 
     /// Settings of Grbl and TinyG.
     pub(super) fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
+        if let Some(title) = okuma_title(line) {
+            self.track.program.title.get_or_insert_with(|| title.to_owned());
+            return Ok(Step::Next);
+        }
         let upper = line.trim().to_ascii_uppercase();
         if upper.starts_with("$H") {
             self.track

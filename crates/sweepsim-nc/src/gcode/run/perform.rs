@@ -17,6 +17,7 @@ struct Plan {
     machine_coordinates: bool,
     motion: Option<Word>,
     dwell: bool,
+    changes_tool: bool,
     length: Option<(Code, Word)>,
     macro_call: Option<Word>,
 }
@@ -31,20 +32,14 @@ impl Reader {
         if block.is_empty() {
             return Ok(Step::Next);
         }
-        let has = |code: f64| {
-            block
-                .words()
-                .iter()
-                .any(|word| word.letter == 'G' && word.value == code)
-        };
+        let has = |code: f64| block.words().iter().any(|w| (w.letter, w.value) == ('G', code));
         if has(66.0) {
             return self.begin_modal_macro(block).map_err(|problem| (problem, block.all()));
         }
         if has(67.0) {
-            self.modal_macro = None;
+            self.calls.modal = None;
         }
-        let macro_call = block.has('G') && block.words().iter().any(|w| w.letter == 'G' && w.value == 65.0);
-        if !macro_call {
+        if !has(65.0) {
             self.check_letters(block)?;
         }
         self.check_plane_blocks(block)
@@ -58,6 +53,10 @@ impl Reader {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
         }
         let mut step = self.misc(block)?;
+        if plan.changes_tool {
+            self.change_tool(self.tools.selected)
+                .map_err(|problem| (problem, block.all()))?;
+        }
         (self.track.feed, self.track.feed_mode) = (self.modes.feed, self.modes.feed_mode);
         self.track.exact_stop = self.modes.exact_stop || self.modes.stops_here;
         let whole = |problem| (problem, block.all());
@@ -94,8 +93,8 @@ impl Reader {
         }
         if plan.action.is_none()
             && block.first("XYZABC").is_some()
-            && let Some((arguments, depth)) = self.modal_macro.clone()
-            && depth == self.levels.len()
+            && let Some((arguments, depth)) = self.calls.modal.clone()
+            && depth == self.calls.levels.len()
         {
             step = self.call_macro(&arguments, here).map_err(whole)?;
         }
@@ -138,8 +137,8 @@ impl Reader {
             ))),
             (None, _) => Ok(()),
             // The block with the motion code may be the one with the problem.
-            (Some(_), None) if self.uncertain => {
-                if self.lenient {
+            (Some(_), None) if self.seen.uncertain => {
+                if self.rules.lenient {
                     self.track
                         .note("left out: a move after a problem, until its kind is known again");
                 }
@@ -153,8 +152,8 @@ impl Reader {
                 Err((problem, word.span()))
             }
             (Some(_), Some(motion)) => {
-                if self.strict
-                    && self.controller == Some(Controller::LinuxCnc)
+                if self.rules.strict
+                    && self.rules.controller == Some(Controller::LinuxCnc)
                     && !matches!(motion, MotionMode::Rapid | MotionMode::Thread | MotionMode::RigidTap)
                     && self.modes.feed.is_none_or(|feed| feed <= 0.0)
                 {
@@ -162,13 +161,13 @@ impl Reader {
                         "a feed move without a feed: expected F before it",
                     )));
                 }
-                if self.units.is_none() {
-                    self.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
+                if self.seen.units.is_none() {
+                    self.seen.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
                 }
                 if plan.machine_coordinates {
                     self.go_in_machine_coordinates(motion, block).map_err(whole)
                 } else {
-                    self.offsets.use_active().map_err(whole)?;
+                    self.track.use_offset(&mut self.offsets.work).map_err(whole)?;
                     match motion {
                         MotionMode::Cycle(cycle) => self.cycle(cycle, block).map_err(whole),
                         _ => self.go(motion, block).map_err(whole),
@@ -187,7 +186,11 @@ impl Reader {
         }
         for &word in block.words().iter().filter(|word| word.letter == 'G') {
             let fail = |problem| Err((problem, word.span()));
-            match codes::g_in(word.value, block) {
+            let code = match codes::g_in(word.value, block, self.rules.controller) {
+                Code::Probe if self.track.strict() => Code::Refused("probing is"),
+                code => code,
+            };
+            match code {
                 Code::Motion(motion) => {
                     if plan.motion.replace(word).is_some() {
                         return fail(NcProblem::syntax(
@@ -219,7 +222,7 @@ impl Reader {
                 }
                 Code::StopHere => self.modes.stops_here = true,
                 // Grbl's G61 is its only mode: an exact path.
-                Code::ExactStop(on) => self.modes.exact_stop = on && self.controller != Some(Controller::Grbl),
+                Code::ExactStop(on) => self.modes.exact_stop = on && self.rules.controller != Some(Controller::Grbl),
                 Code::Blending => {
                     self.modes.exact_stop = false;
                     if let Some(tolerance) = block.get('P').filter(|p| *p > 0.0) {
@@ -231,19 +234,13 @@ impl Reader {
                 Code::Absolute(absolute) => self.modes.absolute = absolute,
                 Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
                 Code::Feed(mode) => self.modes.feed_mode = mode,
+                Code::ChangeTool => plan.changes_tool = true,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
-                Code::TipControl(on) => {
-                    self.tip.by_length = on;
-                    self.tip.vectors = false;
-                }
-                Code::TipVectors => {
-                    self.tip.by_length = true;
-                    self.tip.vectors = true;
-                }
+                Code::TipControl(on) => (self.tip.by_length, self.tip.vectors) = (on, false),
+                Code::TipVectors => (self.tip.by_length, self.tip.vectors) = (true, true),
                 Code::TipControlByLetters => {
                     self.track.driver.prefer(Sense::Tool);
-                    self.tip.by_length = true;
-                    self.tip.vectors = false;
+                    (self.tip.by_length, self.tip.vectors) = (true, false);
                 }
                 Code::CancelLength => {
                     self.tip.by_length = false;
@@ -262,8 +259,6 @@ impl Reader {
                         plan.length = slot;
                     }
                 }
-                code @ Code::WorkOffset(_) => self.act(code, block).map_err(|problem| (problem, word.span()))?,
-                code @ Code::WorkOffsetByWord => self.act(code, block).map_err(|problem| (problem, word.span()))?,
                 Code::Compensation { left, by_words } => self
                     .compensate(left, by_words, block)
                     .map_err(|problem| (problem, word.span()))?,
@@ -273,7 +268,7 @@ impl Reader {
                     .map_err(|problem| (problem, word.span()))?,
                 Code::MachineCoordinates => plan.machine_coordinates = true,
                 Code::Polar(on) => self.modes.polar = on,
-                code @ (Code::CancelRotation | Code::CancelScale) => {
+                code @ (Code::WorkOffset(_) | Code::WorkOffsetByWord | Code::CancelRotation | Code::CancelScale) => {
                     self.act(code, block).map_err(|problem| (problem, word.span()))?;
                 }
                 Code::Dwell => plan.dwell = true,
@@ -281,6 +276,8 @@ impl Reader {
                 code @ (Code::Ignored(_)
                 | Code::Home { .. }
                 | Code::SetHome { .. }
+                | Code::Probe
+                | Code::ReturnLevel
                 | Code::SetOffsets
                 | Code::LocalShift
                 | Code::ShiftHere
@@ -353,11 +350,7 @@ impl Reader {
                 }
                 letter => self.track.note(format!("{letter} words are not understood: ignored")),
             }
-            if word.whole
-                && matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
-                && "XYZIJKR".contains(word.letter)
-                && word.value != 0.0
-            {
+            if word.whole && self.rules.fanuc() && "XYZIJKR".contains(word.letter) && word.value != 0.0 {
                 self.track.note(
                     "lengths without a decimal point are taken as whole units; without its calculator mode, the control takes them in its smallest increment",
                 );
@@ -368,7 +361,7 @@ impl Reader {
 
     /// LinuxCNC rejects words that no code of their block uses.
     fn check_spare_words(&self, block: &Block) -> Result<(), Located> {
-        if !self.strict || self.controller != Some(Controller::LinuxCnc) || !block.has('R') {
+        if !self.rules.strict || self.rules.controller != Some(Controller::LinuxCnc) || !block.has('R') {
             return Ok(());
         }
         let is = |letter: char, value: f64| block.words().iter().any(|w| w.letter == letter && w.value == value);

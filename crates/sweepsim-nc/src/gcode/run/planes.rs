@@ -66,8 +66,9 @@ impl Reader {
             ));
         };
         // LinuxCNC gives the angles in the order of the turns; the others by axis, I about X: that is one angle an axis.
-        let by_axis = fixed && self.controller != Some(Controller::LinuxCnc);
-        if by_axis && (axes[0] == axes[2]) || !fixed && order != usual && self.controller != Some(Controller::LinuxCnc)
+        let by_axis = fixed && self.rules.controller != Some(Controller::LinuxCnc);
+        if by_axis && (axes[0] == axes[2])
+            || !fixed && order != usual && self.rules.controller != Some(Controller::LinuxCnc)
         {
             return Err(NcProblem::unsupported(
                 format!("the order of axes Q{order} is"),
@@ -98,7 +99,7 @@ impl Reader {
         vector: [f64; 3],
     ) -> Result<Option<WorkFrame>, NcProblem> {
         let (first, last) = if kind == 2 { (0, 3) } else { (1, 2) };
-        let mut blocks = self.plane_blocks.take().unwrap_or(PlaneBlocks {
+        let mut blocks = self.pending.plane.take().unwrap_or(PlaneBlocks {
             kind,
             ..PlaneBlocks::default()
         });
@@ -126,7 +127,7 @@ impl Reader {
             turn: block.get('R').unwrap_or(0.0),
         });
         if q < last {
-            self.plane_blocks = Some(blocks);
+            self.pending.plane = Some(blocks);
             return Ok(None);
         }
         let given = |q: usize| blocks.given[q].unwrap_or_default();
@@ -172,9 +173,9 @@ impl Reader {
             codes.any(|word| matches!(word.value, 68.2 | 68.4 | 268.0))
                 && block.get('P') == Some(f64::from(blocks.kind))
         };
-        match self.plane_blocks {
+        match self.pending.plane {
             Some(blocks) if !goes_on(&blocks) => {
-                self.plane_blocks = None;
+                self.pending.plane = None;
                 Err(NcProblem::syntax(format!(
                     "the plane of G68.2 P{} is not complete: expected its next Q before this",
                     blocks.kind

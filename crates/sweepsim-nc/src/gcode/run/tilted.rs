@@ -5,8 +5,10 @@ use nalgebra::Vector3;
 use super::interpreter::Reader;
 use crate::drive::{Coordinates, Sense};
 use crate::gcode::codes::{Code, MotionMode};
+use crate::gcode::okuma;
 use crate::gcode::syntax::block::Block;
 use crate::machines::{SHORTEST, WorkFrame};
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 impl Reader {
@@ -80,6 +82,32 @@ impl Reader {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Okuma's `CALL`: of an offset that turns with the table to these angles, or of something that only the machine knows.
+    pub(crate) fn call_okuma(&mut self, call: &str) -> Result<(), NcProblem> {
+        let Some(angles) = okuma::turned_offset(call) else {
+            let name = call.split_whitespace().next().unwrap_or("").to_owned();
+            if self.track.strict() || !name.starts_with("OO") {
+                let problem = NcProblem::syntax(format!(
+                    "the subprogram {name} is missing: expected the moves written out"
+                ));
+                return Err(problem);
+            }
+            let taken = "left out; where the tool is then is known again from the next moves";
+            let what = format!("{name}, a program of the machine");
+            self.track.assume(Assumption::new(what, taken, "the moves written out"));
+            self.track.leave([true; 3]);
+            return Ok(());
+        };
+        self.track.driver.prefer(Sense::Tool);
+        self.modes.dynamic = angles != [0.0; 3];
+        let turn = self.track.driver.orientation(angles)?;
+        self.set_tilt(
+            self.modes
+                .dynamic
+                .then(|| WorkFrame::with_matrix(turn, Vector3::zeros())),
+        )
     }
 
     /// Another tilted plane, or none.

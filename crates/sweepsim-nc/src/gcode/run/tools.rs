@@ -9,7 +9,7 @@ use crate::gcode::offsets::known;
 use crate::gcode::syntax::block::Block;
 use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
-use crate::model::read_options::ToolOffset;
+use crate::model::read_options::{Controller, ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
 /// A row of the table, in millimetres.
@@ -19,28 +19,59 @@ pub(crate) struct ToolRow {
     pub diameter: f64,
 }
 
-/// The table.
+/// The length offset in effect.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LengthOffset {
+    pub offset: [f64; 3],
+    /// Whether it is a known one.
+    pub known: bool,
+    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
+    pub used: bool,
+}
+
+/// The table, and what of it is in effect.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ToolTable {
-    rows: BTreeMap<u32, ToolRow>,
+    /// Each as measured, and its wear.
+    rows: BTreeMap<u32, [ToolRow; 2]>,
     /// Diameters of numbers without a row.
     diameters: BTreeMap<u32, f64>,
+    /// Registers D that nothing sets are 0, not the radius of the tool.
+    pub wear_alone: bool,
+    pub length: LengthOffset,
+    /// By a T word, not yet in the spindle.
+    pub selected: Option<u32>,
+    pub changed: bool,
 }
 
 impl ToolTable {
-    pub(crate) fn new(offsets: &BTreeMap<u32, ToolOffset>, diameters: &BTreeMap<u32, f64>) -> Self {
-        let row = |tool: &ToolOffset| ToolRow {
-            offset: [0.0, 0.0, tool.length],
-            diameter: tool.diameter,
+    pub(crate) fn new(options: &ReadOptions, text: &str) -> Self {
+        let row = |tool: &ToolOffset| {
+            let measured = ToolRow {
+                offset: [0.0, 0.0, tool.length],
+                diameter: tool.diameter,
+            };
+            [measured, ToolRow::default()]
         };
+        let rows = options.tool_offsets.iter().map(|(&number, tool)| (number, row(tool)));
+        let used = text.contains("G43") || text.contains("g43");
         Self {
-            rows: offsets.iter().map(|(&number, tool)| (number, row(tool))).collect(),
-            diameters: diameters.clone(),
+            rows: rows.collect(),
+            diameters: options.diameters.clone(),
+            length: LengthOffset {
+                used,
+                ..LengthOffset::default()
+            },
+            ..Self::default()
         }
     }
 
     pub(crate) fn get(&self, number: u32) -> Option<ToolRow> {
-        self.rows.get(&number).copied()
+        let [measured, wear] = self.rows.get(&number)?;
+        Some(ToolRow {
+            offset: std::array::from_fn(|k| measured.offset[k] + wear.offset[k]),
+            diameter: measured.diameter + wear.diameter,
+        })
     }
 
     /// What is known of a tool without a row.
@@ -52,21 +83,17 @@ impl ToolTable {
 impl Reader {
     /// A tool's number.
     pub(crate) fn tool_number(value: f64) -> Result<u32, NcProblem> {
-        if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
-            Ok(value as u32)
-        } else {
-            Err(NcProblem::value("a tool number", value, "a whole number"))
-        }
+        NcProblem::whole("a tool number", value, 0..=u32::MAX, "a whole number")
     }
 
     /// The new tool continues from the current position, on a separate path.
     pub(crate) fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
         self.refuse_compensation("a tool change")?;
         let Some(tool) = tool else { return Ok(()) };
-        if Some(tool) == self.track.tool && !self.tool_changed {
+        if Some(tool) == self.track.tool && !self.tools.changed {
             self.track.event(EventKind::ToolChange(tool))?;
         }
-        self.tool_changed = true;
+        self.tools.changed = true;
         self.track.change_tool(Some(tool))?;
         self.update_frame();
         Ok(())
@@ -77,7 +104,7 @@ impl Reader {
         self.refuse_compensation("a change of the length offset")?;
         let table = matches!(code, LengthCode::Table | LengthCode::Opposite | LengthCode::Add);
         let mut offset = if code == LengthCode::Add {
-            self.length.offset
+            self.tools.length.offset
         } else {
             [0.0; 3]
         };
@@ -102,7 +129,7 @@ impl Reader {
                 offset[k] += sign * row.offset[k];
             }
             // A length that is not known is that of the tool.
-            self.length.known = self.tools.get(number).is_some();
+            self.tools.length.known = self.tools.get(number).is_some();
         } else {
             let words = self.lengths(block, ['X', 'Y', 'Z']);
             for k in 0..3 {
@@ -111,18 +138,18 @@ impl Reader {
                     (Some(word), _) => offset[k] = word,
                     (None, LengthCode::Add) => {}
                     // G43.1 leaves the axes that it does not name.
-                    (None, _) => offset[k] = self.length.offset[k],
+                    (None, _) => offset[k] = self.tools.length.offset[k],
                 }
             }
-            self.length.known = true;
+            self.tools.length.known = true;
         }
         self.use_length(offset)
     }
 
     /// Puts a length offset into effect: the machine stays where it is.
     pub(crate) fn use_length(&mut self, offset: [f64; 3]) -> Result<(), NcProblem> {
-        self.reframe(|reader| reader.length.offset = offset)?;
-        let length = self.length.offset.map(|x| x / self.unit());
+        self.reframe(|reader| reader.tools.length.offset = offset)?;
+        let length = self.tools.length.offset.map(|x| x / self.unit());
         self.trace([Canonical::ToolOffset(length)]);
         Ok(())
     }
@@ -138,17 +165,19 @@ impl Reader {
             }
         };
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let mut row = self.tools.get(number).unwrap_or_default();
+        let [mut row, mut wear] = self.tools.rows.get(&number).copied().unwrap_or_default();
         let r = block.get('R').map(|r| r * self.unit());
         let fanuc = words.iter().all(Option::is_none) && r.is_some() && l >= 10;
         if fanuc {
+            // In G91 it adds, as G10 L2 does there.
+            let adds = !self.modes.absolute && self.rules.controller != Some(Controller::LinuxCnc);
+            let set = |place: &mut f64, value: f64| *place = if adds { *place + value } else { value };
             let r = r.unwrap_or(0.0);
             match l {
-                10 => row.offset[2] = r,
-                12 => row.diameter = 2.0 * r,
-                // Wear, on top of the geometry.
-                11 => row.offset[2] += r,
-                _ => row.diameter += 2.0 * r,
+                10 => set(&mut row.offset[2], r),
+                12 => set(&mut row.diameter, 2.0 * r),
+                11 => set(&mut wear.offset[2], r),
+                _ => set(&mut wear.diameter, 2.0 * r),
             }
         } else {
             if l >= 12 {
@@ -168,7 +197,7 @@ impl Reader {
                 _ => self.measure_tool(l == 11, words, &mut row)?,
             }
         }
-        self.tools.rows.insert(number, row);
+        self.tools.rows.insert(number, [row, wear]);
         self.update_frame();
         Ok(())
     }
@@ -178,7 +207,7 @@ impl Reader {
     fn measure_tool(&self, fixture: bool, words: [Option<f64>; 3], row: &mut ToolRow) -> Result<(), NcProblem> {
         let mut frame = self.frame_map();
         if fixture {
-            let placed = self.offsets.placed(8).unwrap_or_default();
+            let placed = self.offsets.work.placed(8).unwrap_or_default();
             frame = WorkFrame::shifted(placed.origin);
         }
         let control = self.control_position();

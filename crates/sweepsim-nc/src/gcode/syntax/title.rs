@@ -49,6 +49,12 @@ pub(crate) fn of(line: &str) -> Option<String> {
     Some(title.chars().take(LONGEST).collect())
 }
 
+/// The comment behind the number of a program: `O0000(BRACKET)`.
+pub(crate) fn in_comment(rest: &str) -> Option<String> {
+    let name = rest.trim_start().strip_prefix('(')?.split(')').next()?.trim();
+    (!name.is_empty()).then(|| name.chars().take(LONGEST).collect())
+}
+
 /// The number of lines before the first `%` if they are a title: none of them a block, and not all empty. A tape begins at its `%`.
 pub(crate) fn leader(text: &str) -> usize {
     let mut title = false;

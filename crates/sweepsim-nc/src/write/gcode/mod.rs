@@ -72,6 +72,12 @@ impl GcodeOptions {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GcodeError {
+    /// Programs of this control are read, not written.
+    #[error("programs for {control} are not written: expected another dialect")]
+    Dialect {
+        /// The control.
+        control: &'static str,
+    },
     /// A pose that the machine does not reach.
     #[error("line {line}: {error}")]
     Reach {

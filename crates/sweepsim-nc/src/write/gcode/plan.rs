@@ -41,6 +41,9 @@ pub(super) struct Plan<'a> {
 impl<'a> Plan<'a> {
     pub fn new(program: &'a Program, options: &'a GcodeOptions) -> Result<Self, GcodeError> {
         let control = options.dialect.name();
+        if options.dialect == Controller::Okuma {
+            return Err(GcodeError::Dialect { control });
+        }
         let machine = match &options.machine {
             None => None,
             Some(machine) => Some(machine.kinematics.as_deref().ok_or(GcodeError::NoAxes)?),

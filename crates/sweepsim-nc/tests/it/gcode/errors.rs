@@ -158,7 +158,7 @@ const BAD: [(&str, Option<Controller>, &str); 52] = [
     (
         "G0 X0 Y0 Z0\nG41 D3 G1 X5",
         None,
-        "2:1: the diameter D3 for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or G41.1 D with the diameter",
+        "2:1: the diameter D3 for cutter compensation is not known: expected --diameters D3=… (in a job: `diameters`), a tool table, or G41.1 D with the diameter",
     ),
     (
         "G0 X0 Y0 Z0\nG41.1 D10\nG1 X3",
@@ -239,7 +239,7 @@ fn forty_bad_programs() {
     let mut wrong = Vec::new();
     for (text, controller, message) in BAD {
         let mut options = ReadOptions::default();
-        options.controller = controller;
+        (options.controller, options.strict) = (controller, true);
         match gcode::read(text, &options) {
             Ok(_) => wrong.push(format!("{text:?} was read")),
             Err(error) if error.to_string() == message => {}

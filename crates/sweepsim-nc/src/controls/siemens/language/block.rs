@@ -146,7 +146,7 @@ fn statement(cursor: &mut Cursor) -> Result<Statement, Located> {
             cursor.at += cursor.rest().len();
             Statement::Proc(parameters)
         }
-        "EXTERN" | "WORKPIECE" | "REDEF" => {
+        "EXTERN" | "REDEF" => {
             cursor.at += cursor.rest().len();
             Statement::Declaration
         }

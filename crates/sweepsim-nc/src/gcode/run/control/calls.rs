@@ -51,6 +51,17 @@ pub(crate) struct CallLevel {
     pub loops: Vec<(u32, usize)>,
 }
 
+/// The calls on their way.
+pub(crate) struct Calls {
+    pub levels: Vec<CallLevel>,
+    /// The block of G66, and how deep in calls it is.
+    pub modal: Option<(Block, usize)>,
+    /// By the file and the line of the call, and the call within which it is.
+    numbers: BTreeMap<(usize, usize, Option<u32>), u32>,
+    /// Where the last jump backwards led.
+    pub turned: Option<SourceLine>,
+}
+
 /// Fanuc's letters for the arguments of a macro, and their variables.
 const ARGUMENTS: [(char, usize); 21] = [
     ('A', 1),
@@ -76,14 +87,25 @@ const ARGUMENTS: [(char, usize); 21] = [
     ('Z', 26),
 ];
 
+impl Default for Calls {
+    fn default() -> Self {
+        Self {
+            levels: vec![CallLevel::default()],
+            modal: None,
+            numbers: BTreeMap::new(),
+            turned: None,
+        }
+    }
+}
+
 impl Reader {
     pub(crate) fn level(&mut self) -> &mut CallLevel {
         // There is always the level of the main program.
-        if self.levels.is_empty() {
-            self.levels.push(CallLevel::default());
+        if self.calls.levels.is_empty() {
+            self.calls.levels.push(CallLevel::default());
         }
-        let last = self.levels.len() - 1;
-        &mut self.levels[last]
+        let last = self.calls.levels.len() - 1;
+        &mut self.calls.levels[last]
     }
 
     /// Calls a subroutine of LinuxCNC.
@@ -132,14 +154,8 @@ impl Reader {
                 "{code} without P: expected the number of a subprogram"
             )));
         };
-        if p.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&p) {
-            return Err(NcProblem::value(
-                format!("P of {code}"),
-                p,
-                "a whole number from 0 to 99999999",
-            ));
-        }
-        let mut number = p as u32;
+        let expected = "a whole number from 0 to 99999999";
+        let mut number = NcProblem::whole(format!("P of {code}"), p, 0..=99_999_999, expected)?;
         let mut times = self.times(block)?;
         // Fanuc's short form: P51002 is five times O1002.
         if !by_block_number
@@ -154,14 +170,16 @@ impl Reader {
             return Ok(Step::Next);
         }
         let start = if by_block_number {
-            let line = self.sources[here.source].labels().number(number, here.line);
+            let line = self.texts.sources[here.source].labels().number(number, here.line);
             let line = line.ok_or_else(|| NcProblem::syntax(format!("M97 P{number}: there is no block N{number}")))?;
             SourceLine { line, ..here }
         } else {
-            let spot = self.find(&Label::Number(number), here.source, None)?;
-            SourceLine {
-                line: spot.line + 1,
-                ..spot
+            match self.find(&Label::Number(number), here.source, None) {
+                Ok(spot) => SourceLine {
+                    line: spot.line + 1,
+                    ..spot
+                },
+                Err(problem) => return self.without_macro(number, block, problem),
             }
         };
         let level = CallLevel {
@@ -180,7 +198,10 @@ impl Reader {
             return Err(NcProblem::syntax("G65 without the number of a program: expected P"));
         };
         let times = self.times(block)?;
-        let spot = self.find(&Label::Number(p as u32), here.source, None)?;
+        let spot = match self.find(&Label::Number(p as u32), here.source, None) {
+            Ok(spot) => spot,
+            Err(problem) => return self.without_macro(p as u32, block, problem),
+        };
         let mut locals: Locals = [None; 34];
         let after = block.span('P').end;
         let arguments = || block.words().iter().filter(|word| word.span().start >= after);
@@ -236,7 +257,7 @@ impl Reader {
 
     /// G66: calls the macro after each block that moves, as G65 does, until G67. Moves within the macro do not call it again.
     pub(crate) fn begin_modal_macro(&mut self, block: &Block) -> Result<Step, NcProblem> {
-        if self.modal_macro.is_some() {
+        if self.calls.modal.is_some() {
             return Err(NcProblem::unsupported(
                 "a modal macro call within another one is",
                 "expected G67 before it",
@@ -247,25 +268,23 @@ impl Reader {
         }
         // Calls return to the level they were made from: the main program's is the first.
         self.level();
-        self.modal_macro = Some((block.clone(), self.levels.len()));
+        self.calls.modal = Some((block.clone(), self.calls.levels.len()));
         Ok(Step::Next)
     }
 
     /// How often to execute it: L.
     fn times(&self, block: &Block) -> Result<u32, NcProblem> {
-        match block.get('L') {
-            None => Ok(1),
-            Some(l) if l.fract() == 0.0 && (0.0..=99_999.0).contains(&l) => Ok(l as u32),
-            Some(l) => Err(NcProblem::value(
-                "the number of repeats L",
-                l,
-                "a whole number from 0 to 99999",
-            )),
-        }
+        let l = block.get('L').unwrap_or(1.0);
+        NcProblem::whole(
+            "the number of repeats L",
+            l,
+            0..=99_999,
+            "a whole number from 0 to 99999",
+        )
     }
 
     fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
-        if self.levels.len() > DEEPEST {
+        if self.calls.levels.len() > DEEPEST {
             self.leave_level(level);
             return Err(NcProblem::syntax(format!(
                 "calls within calls are more than {DEEPEST} deep: a subprogram calls itself without end"
@@ -274,7 +293,7 @@ impl Reader {
         let parent = self.level().call;
         let key = (self.track.place.file, self.track.place.line, parent);
         let next = self.track.program.calls.len() as u32;
-        let call = *self.call_numbers.entry(key).or_insert(next);
+        let call = *self.calls.numbers.entry(key).or_insert(next);
         if call == next {
             self.track.program.calls.push(Call::new(key.0, key.1, parent));
         }
@@ -283,7 +302,7 @@ impl Reader {
             line: here.line + 1,
             ..here
         };
-        self.levels.push(level);
+        self.calls.levels.push(level);
         Ok(Step::Jump(to))
     }
 
@@ -307,7 +326,7 @@ impl Reader {
                 "this ends a subroutine that was not called by `O… call`: a subprogram called by M98 ends with M99",
             ));
         }
-        let Some(level) = self.levels.pop() else {
+        let Some(level) = self.calls.levels.pop() else {
             return Ok(Step::Next);
         };
         let back = level.back;
@@ -318,14 +337,11 @@ impl Reader {
 
     /// M99.
     pub(crate) fn leave_program(&mut self, block: &Block, here: SourceLine) -> Result<Step, NcProblem> {
-        let to_number = match block.get('P') {
-            None => None,
-            Some(p) if p.fract() == 0.0 && (0.0..=1e8).contains(&p) => Some(p as u32),
-            Some(p) => return Err(NcProblem::value("P of M99", p, "the number of a block")),
-        };
+        let number = |p: f64| NcProblem::whole("P of M99", p, 0..=100_000_000, "the number of a block");
+        let to_number = block.get('P').map(number).transpose()?;
         let jump = |reader: &Self, from: SourceLine| match to_number {
             None => Ok(Step::Jump(from)),
-            Some(number) => match reader.sources[from.source].labels().number(number, from.line) {
+            Some(number) => match reader.texts.sources[from.source].labels().number(number, from.line) {
                 Some(line) => Ok(Step::Jump(SourceLine { line, ..from })),
                 None => Err(NcProblem::syntax(format!(
                     "M99 P{number}: there is no block N{number} to return to"
@@ -347,7 +363,7 @@ impl Reader {
                 Ok(Step::Jump(*start))
             }
             CallKind::Program { .. } => {
-                let Some(level) = self.levels.pop() else {
+                let Some(level) = self.calls.levels.pop() else {
                     return Ok(Step::End);
                 };
                 let back = level.back;

@@ -71,11 +71,9 @@ impl Reader {
         let (value, _) = values.value()?;
         let span = start..values.cursor.at;
         let number = value.unwrap_or(0.0);
-        if number.fract() != 0.0 || !(0.0..=999_999_999.0).contains(&number) {
-            let problem = NcProblem::value("the block number of GOTO", number, "a whole number");
-            return Err((problem, span));
-        }
-        match self.sources[here.source].labels().number(number as u32, here.line) {
+        let number = NcProblem::whole("the block number of GOTO", number, 0..=999_999_999, "a whole number");
+        let number = number.map_err(|problem| (problem, span.clone()))?;
+        match self.texts.sources[here.source].labels().number(number, here.line) {
             Some(line) if line <= here.line => Ok(self.turn(SourceLine { line, ..here })),
             Some(line) => Ok(Step::Jump(SourceLine { line, ..here })),
             None => {
@@ -116,10 +114,10 @@ impl Reader {
     }
 
     fn end_of_loop(&mut self, number: u32, here: SourceLine) -> Option<usize> {
-        if let Some(line) = self.loop_ends.get(&here) {
+        if let Some(line) = self.texts.loop_ends.get(&here) {
             return *line;
         }
-        let source = &self.sources[here.source];
+        let source = &self.texts.sources[here.source];
         let mut deep = 0_usize;
         let mut end = None;
         for line in here.line + 1..source.len() {
@@ -134,7 +132,7 @@ impl Reader {
                 deep -= 1;
             }
         }
-        self.loop_ends.insert(here, end);
+        self.texts.loop_ends.insert(here, end);
         end
     }
 }

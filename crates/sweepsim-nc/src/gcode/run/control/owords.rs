@@ -8,7 +8,7 @@ use crate::gcode::flow::keywords::{Keyword, Label, after_letter, keyword, label}
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::Values;
-use crate::gcode::syntax::words;
+use crate::gcode::syntax::{title, words};
 use crate::text::error::{Located, NcProblem};
 
 /// Arguments of a call, at most.
@@ -29,11 +29,8 @@ impl Reader {
                 let (value, _) = values.value()?;
                 cursor = values.cursor;
                 let value = value.unwrap_or(0.0);
-                if value.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&value) {
-                    let problem = NcProblem::value("the number of a subroutine", value, "a whole number");
-                    return Err((problem, start..cursor.at));
-                }
-                Label::Number(value as u32)
+                let number = NcProblem::whole("the number of a subroutine", value, 0..=99_999_999, "a whole number");
+                Label::Number(number.map_err(|problem| (problem, start..cursor.at))?)
             }
         };
         let Some(keyword) = keyword(&mut cursor) else {
@@ -121,12 +118,12 @@ impl Reader {
 
     /// A jump backwards: loops end by a budget.
     pub(crate) fn turn(&mut self, to: SourceLine) -> Step {
-        self.turned = Some(to);
+        self.calls.turned = Some(to);
         Step::Jump(to)
     }
 
     fn following(&self, name: &Label, here: SourceLine, keywords: &[Keyword]) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let found = labels
             .after(name, here.line)
             .find(|(_, keyword)| keywords.contains(keyword));
@@ -134,7 +131,7 @@ impl Reader {
     }
 
     fn preceding(&self, name: &Label, here: SourceLine, wanted: Keyword) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let found = labels.before(name, here.line).find(|(_, keyword)| *keyword == wanted);
         found.map(|(line, _)| line)
     }
@@ -148,7 +145,7 @@ impl Reader {
 
     /// The `do` of a loop that ends with this `while`.
     fn loop_start(&self, name: &Label, here: SourceLine) -> Option<usize> {
-        let labels = self.sources[here.source].labels();
+        let labels = self.texts.sources[here.source].labels();
         let ends = [Keyword::Do, Keyword::While, Keyword::EndWhile];
         let (line, keyword) = labels
             .before(name, here.line)
@@ -173,7 +170,10 @@ impl Reader {
                 "there is no `{name} endsub` after the line where it begins"
             )));
         };
-        match self.sources[here.source].labels().subroutine_within(here.line, end) {
+        match self.texts.sources[here.source]
+            .labels()
+            .subroutine_within(here.line, end)
+        {
             Some(line) => Err(NcProblem::syntax(format!(
                 "a subroutine within this one, in line {}: expected one after the other",
                 line + 1
@@ -186,7 +186,7 @@ impl Reader {
     fn next_branch(&mut self, name: &Label, here: SourceLine) -> Result<Step, Located> {
         let mut line = here.line;
         loop {
-            let labels = self.sources[here.source].labels();
+            let labels = self.texts.sources[here.source].labels();
             let ends = [Keyword::ElseIf, Keyword::Else, Keyword::EndIf];
             let Some((next, found)) = labels.after(name, line).find(|(_, keyword)| ends.contains(keyword)) else {
                 let problem = NcProblem::syntax(format!("there is no `{name} endif` after this line"));
@@ -196,7 +196,7 @@ impl Reader {
             if found != Keyword::ElseIf {
                 return Ok(Step::Jump(SourceLine { line: line + 1, ..here }));
             }
-            let source = std::rc::Rc::clone(&self.sources[here.source]);
+            let source = std::rc::Rc::clone(&self.texts.sources[here.source]);
             let Some(mut cursor) = after_letter(source.line(line)) else {
                 continue;
             };
@@ -246,15 +246,16 @@ impl Reader {
         let span = 0..cursor.at;
         let main = self.level().kind == CallKind::Main;
         match main {
-            true if self.numbered => {
+            true if self.seen.numbered => {
                 self.track
                     .note(format!("{name} begins another program: this one ends here"));
                 return Ok(Step::End);
             }
             true => {
-                self.numbered = true;
+                self.seen.numbered = true;
                 if self.track.program.title.is_none() {
-                    self.track.program.title = Some(name.to_string());
+                    let title = title::in_comment(&cursor.line[cursor.at..]);
+                    self.track.program.title = Some(title.unwrap_or_else(|| name.to_string()));
                 }
             }
             false => {

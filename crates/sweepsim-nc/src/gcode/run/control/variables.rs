@@ -1,14 +1,15 @@
 //! Numbered and named variables, and what the control keeps in them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::super::interpreter::Reader;
 use crate::gcode::codes::MotionMode;
-use crate::gcode::offsets::Placed;
 use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::syntax::functions::Value;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// `#1` to `#33`, which calls save and restore.
@@ -21,6 +22,8 @@ pub(crate) struct Store {
     /// Named variables of this call: `#<name>`.
     pub named: BTreeMap<String, f64>,
     numbered: BTreeMap<u32, f64>,
+    /// Those of this block that only the machine or the operator knows.
+    asked: RefCell<Vec<u32>>,
     /// Those that begin with `_`: `#<_name>`.
     global: BTreeMap<String, f64>,
 }
@@ -31,8 +34,14 @@ impl Store {
             locals: [None; 34],
             named: BTreeMap::new(),
             numbered: numbered.clone(),
+            asked: RefCell::default(),
             global: BTreeMap::new(),
         }
+    }
+
+    /// Whether a variable was asked for that only the machine or the operator knows.
+    pub(crate) fn asks(&mut self) -> bool {
+        !self.asked.get_mut().is_empty()
     }
 
     pub(crate) fn get(&self, index: u32) -> Value {
@@ -88,7 +97,7 @@ impl Reader {
         };
         let at = self.track.xyz;
         if let Some((offset, part)) = of_work_offset(index) {
-            let placed = self.offsets.placed(offset)?;
+            let placed = self.offsets.work.placed(offset)?;
             return Some(Ok(match part {
                 0..=2 => self.in_units(placed.origin[part]),
                 9 if !fanuc => placed.turn,
@@ -111,7 +120,7 @@ impl Reader {
                 }),
                 4003 => Ok(if self.modes.absolute { 90.0 } else { 91.0 }),
                 4006 => Ok(if self.modes.inch { 20.0 } else { 21.0 }),
-                4014 if self.offsets.active < 6 => Ok(f64::from(54 + self.offsets.active)),
+                4014 if self.offsets.work.active < 6 => Ok(f64::from(54 + self.offsets.work.active)),
                 4109 => Ok(self.modes.feed.unwrap_or(0.0)),
                 4119 => Ok(self.modes.speed.unwrap_or(0.0)),
                 4120 => Ok(f64::from(self.track.tool.unwrap_or(0))),
@@ -123,7 +132,7 @@ impl Reader {
                 5210 => Ok(if self.offsets.shifted { 1.0 } else { 0.0 }),
                 5211..=5213 => Ok(self.in_units(self.offsets.saved_shift()[axis(index, 5211)?])),
                 5214..=5219 => Ok(0.0),
-                5220 => Ok(f64::from(self.offsets.active + 1)),
+                5220 => Ok(f64::from(self.offsets.work.active + 1)),
                 5400 => Ok(f64::from(self.track.tool.unwrap_or(0))),
                 5401..=5403 => {
                     let row = self.tools.get(self.track.tool.unwrap_or(0));
@@ -162,8 +171,8 @@ impl Reader {
             "_feed" => Ok(self.modes.feed.unwrap_or(0.0)),
             "_rpm" => Ok(self.modes.speed.unwrap_or(0.0)),
             "_current_tool" => Ok(f64::from(self.track.tool.unwrap_or(0))),
-            "_selected_tool" => Ok(f64::from(self.selected_tool.unwrap_or(0))),
-            "_coord_system" => Ok(f64::from(match self.offsets.active {
+            "_selected_tool" => Ok(f64::from(self.tools.selected.unwrap_or(0))),
+            "_coord_system" => Ok(f64::from(match self.offsets.work.active {
                 index @ 0..=5 => 540 + 10 * index,
                 index => 585 + index,
             })),
@@ -175,7 +184,7 @@ impl Reader {
             "_value" | "_value_returned" => Ok(self.variables.global.get(name).copied().unwrap_or(0.0)),
             "_task" => Ok(0.0),
             "_vmajor" => Ok(2.9),
-            "_call_level" => Ok(self.levels.len() as f64 - 1.0),
+            "_call_level" => Ok(self.calls.levels.len() as f64 - 1.0),
             _ => return None,
         })
     }
@@ -201,7 +210,7 @@ impl Reader {
             Target::Number(index) => *index,
         };
         if let Some((offset, part)) = of_work_offset(index) {
-            let mut placed = self.offsets.placed(offset).unwrap_or_default();
+            let mut placed = self.offsets.work.placed(offset).unwrap_or_default();
             let number = value.unwrap_or(0.0);
             match part {
                 0..=2 => placed.origin[part] = number * self.unit(),
@@ -209,7 +218,7 @@ impl Reader {
                 _ if number == 0.0 => {}
                 _ => return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z")),
             }
-            return self.reframe(|reader| reader.offsets.place(offset, placed));
+            return self.reframe(|reader| reader.offsets.work.place(offset, placed));
         }
         let system = index >= 1000;
         if self.fanuc() && system {
@@ -237,9 +246,33 @@ impl Reader {
     }
 }
 
+impl Reader {
+    /// Says which variables of a line were not known, and which way it went.
+    pub(crate) fn say_unknown(&mut self, line: &str, jumps: bool) {
+        let mut asked = std::mem::take(&mut *self.variables.asked.borrow_mut());
+        asked.dedup();
+        let upper = line.to_ascii_uppercase();
+        let branches = upper.contains("IF") && upper.contains("GOTO");
+        for index in asked {
+            let value = if index < 1000 { "empty" } else { "0" };
+            let taken = match (branches, jumps) {
+                (true, true) => format!("{value}, by which IF jumps; with another value it may go on"),
+                (true, false) => format!("{value}, by which IF goes on; with another value it may jump"),
+                _ => value.to_owned(),
+            };
+            let settle = format!("#{index}=… in the program, or the control's variables");
+            self.track.assume(Assumption::new(
+                format!("#{index}, which the program does not set"),
+                taken,
+                settle,
+            ));
+        }
+    }
+}
+
 impl Variables for Reader {
     fn fanuc(&self) -> bool {
-        matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
+        self.rules.fanuc()
     }
 
     fn numbered(&self, index: u32) -> Result<Value, NcProblem> {
@@ -249,7 +282,15 @@ impl Variables for Reader {
         if let Some(found) = self.system(index) {
             return found.map(Some);
         }
-        match self.controller {
+        // Common variables that stay from program to program, and those of the machine.
+        if !self.track.strict()
+            && index >= 500
+            && matches!(self.rules.controller, None | Some(Controller::Fanuc | Controller::Haas))
+        {
+            self.variables.asked.borrow_mut().push(index);
+            return Ok((index >= 1000).then_some(0.0));
+        }
+        match self.rules.controller {
             Some(Controller::Fanuc | Controller::Haas) if index >= 1000 => Err(NcProblem::unsupported(
                 format!("reading the control's own variable #{index} is"),
                 "only the machine knows its value",
@@ -288,25 +329,9 @@ impl Variables for Reader {
             Target::Number(index) => {
                 self.variables.get(*index).is_some()
                     || self.system(*index).is_some()
-                    || self.controller == Some(Controller::LinuxCnc) && (1..=5602).contains(index)
+                    || self.rules.controller == Some(Controller::LinuxCnc) && (1..=5602).contains(index)
             }
             Target::Name(name) => self.named(name).is_ok(),
         }
     }
-}
-
-/// The work offsets that the control's variables give.
-pub(crate) fn given_work_offsets(variables: &BTreeMap<u32, f64>, unit: f64) -> Vec<(u32, Placed)> {
-    (0..9)
-        .filter_map(|offset| {
-            let first = 5221 + 20 * offset;
-            let value = |k: u32| variables.get(&(first + k)).copied();
-            if (0..3).all(|k| value(k).is_none()) {
-                return None;
-            }
-            let origin = [0, 1, 2].map(|k| value(k).unwrap_or(0.0) * unit);
-            let turn = value(9).unwrap_or(0.0);
-            Some((offset, Placed { origin, turn }))
-        })
-        .collect()
 }

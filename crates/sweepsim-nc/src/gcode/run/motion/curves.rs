@@ -132,7 +132,7 @@ impl Reader {
             None => 0,
         };
         let Some(start) = self.track.known() else {
-            if self.uncertain {
+            if self.seen.uncertain {
                 return Ok(());
             }
             return Err(NcProblem::syntax(
@@ -140,7 +140,7 @@ impl Reader {
             ));
         };
         let alone = words[u].is_none() && words[v].is_none();
-        let curve = self.nurbs.get_or_insert_with(|| Nurbs {
+        let curve = self.pending.nurbs.get_or_insert_with(|| Nurbs {
             order: LEAST_ORDER,
             points: Vec::new(),
         });
@@ -188,8 +188,8 @@ impl Reader {
     /// `G5.3`: the curve through the control points so far.
     pub(crate) fn end_curve(&mut self) -> Result<(), NcProblem> {
         self.modes.motion = None;
-        let Some(curve) = self.nurbs.take() else {
-            if self.uncertain {
+        let Some(curve) = self.pending.nurbs.take() else {
+            if self.seen.uncertain {
                 return Ok(());
             }
             return Err(NcProblem::syntax("G5.3 without a curve: expected G5.2 before it"));
@@ -218,7 +218,7 @@ impl Reader {
 
     /// An end of the program, or another kind of move: a curve must have ended.
     pub(crate) fn check_curve(&mut self) -> Result<(), NcProblem> {
-        match self.nurbs.take() {
+        match self.pending.nurbs.take() {
             None => Ok(()),
             Some(_) => Err(NcProblem::syntax("the curve of G5.2 has no end: expected G5.3")),
         }

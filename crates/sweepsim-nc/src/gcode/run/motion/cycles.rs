@@ -16,7 +16,7 @@ use crate::text::error::NcProblem;
 /// setting; it concerns moves where the tool has been before.
 const PECK_CLEARANCE: f64 = 0.254;
 /// Repeats of one block, at most.
-const MOST_REPEATS: f64 = 1e6;
+const MOST_REPEATS: u32 = 1_000_000;
 
 impl Reader {
     /// A cycle begins: nothing of the one before stays, but the height it started from.
@@ -34,7 +34,7 @@ impl Reader {
     /// A block in a cycle.
     pub(crate) fn cycle(&mut self, cycle: u8, block: &Block) -> Result<(), NcProblem> {
         let name = format!("G{cycle}");
-        let haas = self.controller == Some(Controller::Haas);
+        let haas = self.rules.controller == Some(Controller::Haas);
         // Haas's G77 is Fanuc's G87; its G87 leaves the retraction to the operator, as G88 does.
         let cycle = match cycle {
             77 if haas => 87,
@@ -49,7 +49,7 @@ impl Reader {
                 )));
             }
         }
-        let linuxcnc = self.controller == Some(Controller::LinuxCnc);
+        let linuxcnc = self.rules.controller == Some(Controller::LinuxCnc);
         if cycle == 77 || linuxcnc && matches!(cycle, 76 | 87) {
             let what = match cycle {
                 76 => "threading cycles of lathes are",
@@ -82,14 +82,13 @@ impl Reader {
             )));
         };
         let repeats = block.get('L').or(block.get('K')).unwrap_or(1.0);
-        if repeats.fract() != 0.0 || !(0.0..=MOST_REPEATS).contains(&repeats) {
-            return Err(NcProblem::value(
-                "the number of repeats",
-                repeats,
-                "a whole number from 0 on",
-            ));
-        }
-        if repeats == 0.0 {
+        let repeats = NcProblem::whole(
+            "the number of repeats",
+            repeats,
+            0..=MOST_REPEATS,
+            "a whole number from 0 on",
+        )?;
+        if repeats == 0 {
             // Only the words are kept.
             return Ok(());
         }
@@ -106,7 +105,7 @@ impl Reader {
         } else if bottom <= plane {
             let clear = match self.modes.retract_to_plane {
                 true => plane,
-                false => initial.max(plane),
+                false => self.modes.return_level.unwrap_or(initial).max(plane),
             };
             self.hole(cycle, [plane, bottom, clear], &sticky)?
         } else {
@@ -120,7 +119,7 @@ impl Reader {
             at[w] = plane;
             self.give(self.stroke_to(at, self.track.abc, true))?;
         }
-        for repeat in 0..repeats as u32 {
+        for repeat in 0..repeats {
             for k in [u, v] {
                 match words[k] {
                     Some(word) if !absolute => at[k] += word,
@@ -147,7 +146,7 @@ impl Reader {
             return Ok(Some(at));
         }
         let [u, v, w] = self.modes.plane;
-        if self.uncertain {
+        if self.seen.uncertain {
             for k in [u, v] {
                 self.track.xyz[k] = words[k].filter(|_| self.modes.absolute);
             }

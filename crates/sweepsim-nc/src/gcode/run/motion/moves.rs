@@ -29,10 +29,11 @@ impl Reader {
             return Err(NcProblem::syntax("G53 with an arc or a cycle: expected G0 or G1"));
         }
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        if self.machine_known
+        if self.offsets.knows_machine()
             && let [x, y, z] = self.control_position()
             && let [Some(x), Some(y), Some(z)] = [words[0].or(x), words[1].or(y), words[2].or(z)]
         {
+            self.track.use_offset(&mut self.offsets.work)?;
             return self.go_to_control([x, y, z], motion == MotionMode::Rapid);
         }
         self.track
@@ -47,7 +48,7 @@ impl Reader {
         let Some(inverse) = self.frame_map().inverse() else {
             return Ok(());
         };
-        let end = inverse.point(std::array::from_fn(|k| control[k] - self.length.offset[k]));
+        let end = inverse.point(std::array::from_fn(|k| control[k] - self.tools.length.offset[k]));
         self.give(self.stroke_to(end, self.track.abc, rapid))
     }
 
@@ -81,17 +82,6 @@ impl Reader {
         Ok(found)
     }
 
-    /// Takes unknown coordinates as 0, before a move that needs them.
-    fn assume(&mut self, needed: impl Fn(usize) -> bool) {
-        for k in 0..3 {
-            if self.track.xyz[k].is_none() && needed(k) {
-                let axis = ['X', 'Y', 'Z'][k];
-                self.track.note(format!("{axis} is not known here: taken as 0"));
-                self.track.xyz[k] = Some(0.0);
-            }
-        }
-    }
-
     /// A move in the program's coordinates.
     pub(crate) fn go(&mut self, motion: MotionMode, block: &Block) -> Result<(), NcProblem> {
         let words = self.polar(self.lengths(block, ['X', 'Y', 'Z']))?;
@@ -103,26 +93,25 @@ impl Reader {
         let vector = self.has_vector(block, motion);
         let cuts = motion != MotionMode::Rapid;
         let unknown = self.track.known().is_none();
-        if self.uncertain && unknown && (cuts || !self.modes.absolute) {
-            // Nothing is assumed about a position that an earlier problem has made unknown.
-            for k in 0..3 {
-                if let Some(word) = words[k] {
-                    self.track.xyz[k] = self.modes.absolute.then_some(word);
-                }
-            }
-            self.track.abc = abc;
-            if self.lenient {
-                self.track
-                    .note("left out: a move after a problem, until its start is known again");
-            }
-            return Ok(());
-        }
         if unknown && (cuts || !self.modes.absolute) {
-            for k in (0..3).filter(|&k| self.track.xyz[k].is_none()) {
+            for k in (0..3).filter(|&k| self.track.xyz[k].is_none() && !self.seen.uncertain) {
                 self.offsets.know(k)?;
             }
             let relative = !self.modes.absolute || matches!(motion, MotionMode::Arc { .. });
-            self.assume(|k| words[k].is_none() || relative);
+            // Nothing is assumed about a position that an earlier problem has made unknown.
+            if self.seen.uncertain || !self.track.complete(|k| words[k].is_none() || relative) {
+                for k in 0..3 {
+                    if let Some(word) = words[k] {
+                        self.track.xyz[k] = self.modes.absolute.then_some(word);
+                    }
+                }
+                self.track.abc = abc;
+                if self.seen.uncertain && self.rules.lenient {
+                    self.track
+                        .note("left out: a move after a problem, until its start is known again");
+                }
+                return Ok(());
+            }
         }
         let mut to = self.track.xyz;
         for k in 0..3 {
@@ -229,13 +218,7 @@ impl Reader {
         block: &Block,
     ) -> Result<CircularArc, NcProblem> {
         let turns = block.get('P').unwrap_or(1.0);
-        if turns.fract() != 0.0 || !(1.0..=1e4).contains(&turns) {
-            return Err(NcProblem::value(
-                "the number of turns P",
-                turns,
-                "a whole number from 1 on",
-            ));
-        }
+        NcProblem::whole("the number of turns P", turns, 1..=10_000, "a whole number from 1 on")?;
         if let Some(word) = block
             .first("LQ")
             .filter(|word| word.value != 0.0 && (word.letter, word.value) != ('L', 1.0))

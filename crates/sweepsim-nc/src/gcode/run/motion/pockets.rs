@@ -1,8 +1,5 @@
 //! Circular pockets of Haas (`G12`, `G13`) and the moves of `G45` to `G48`.
 
-use std::f64::consts::TAU;
-
-use crate::drive::Bend;
 use crate::gcode::codes::MotionMode;
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::Block;
@@ -20,7 +17,7 @@ impl Reader {
     /// the tool goes from the centre to a circle, from one to the next, and back, is in a figure only: on semicircles towards +X here, which is a note.
     pub(crate) fn circular_pocket(&mut self, counter_clockwise: bool, block: &Block) -> Result<(), NcProblem> {
         let name = if counter_clockwise { "G13" } else { "G12" };
-        if !matches!(self.controller, None | Some(Controller::Haas)) {
+        if !matches!(self.rules.controller, None | Some(Controller::Haas)) {
             return Err(NcProblem::unsupported(
                 format!("{name} is"),
                 "it is a circular pocket on Haas only; expected --controller haas",
@@ -81,14 +78,9 @@ impl Reader {
             ));
         }
         let repeats = block.get('L').unwrap_or(1.0);
-        if repeats.fract() != 0.0 || !(1.0..=1e4).contains(&repeats) {
-            return Err(NcProblem::value(
-                "L, the number of repeats",
-                repeats,
-                "a whole number from 1 on",
-            ));
-        }
-        if repeats > 1.0 && self.modes.absolute {
+        let expected = "a whole number from 1 on";
+        let repeats = NcProblem::whole("L, the number of repeats", repeats, 1..=10_000, expected)?;
+        if repeats > 1 && self.modes.absolute {
             return Err(NcProblem::syntax(format!(
                 "L of {name} in G90: expected G91, where each repeat goes down by Z"
             )));
@@ -98,36 +90,12 @@ impl Reader {
         self.track.note(format!(
             "{name}: the tool goes to its circles and back on semicircles towards +X: the control may choose others"
         ));
-        for _ in 0..repeats as usize {
+        for _ in 0..repeats {
             self.go_by(MotionMode::Feed, block, [' ', ' ', 'Z'])?;
-            let Some(centre) = self.track.known() else { break };
-            let turn = if counter_clockwise { TAU } else { -TAU };
-            let mut at = 0.0;
-            for circle in circles.iter().map(|circle| circle - radius).chain([0.0]) {
-                self.semicircle(centre, at, circle, 0.5 * turn)?;
-                if circle > 0.0 {
-                    let mut end = centre;
-                    end[0] += circle;
-                    self.bow(end, [centre[0], centre[1]], turn)?;
-                }
-                at = circle;
-            }
+            self.track.circles(&circles, radius, counter_clockwise)?;
         }
         self.modes.motion = motion;
         Ok(())
-    }
-
-    /// From one distance right of the centre to another.
-    fn semicircle(&mut self, centre: [f64; 3], from: f64, to: f64, sweep: f64) -> Result<(), NcProblem> {
-        let mut end = centre;
-        end[0] += to;
-        self.bow(end, [centre[0] + 0.5 * (from + to), centre[1]], sweep)
-    }
-
-    fn bow(&mut self, end: [f64; 3], centre: [f64; 2], sweep: f64) -> Result<(), NcProblem> {
-        let mut stroke = self.stroke_to(end, self.track.abc, false);
-        stroke.bend = Some(Bend { centre, sweep });
-        self.give(stroke)
     }
 
     /// A straight move by these words alone.
@@ -162,7 +130,7 @@ impl Reader {
                 "expected X, Y, Z",
             ));
         }
-        if self.modes.absolute && self.stretched {
+        if self.modes.absolute && self.pending.stretched {
             return Err(NcProblem::unsupported(
                 format!("{name} right after another such move in G90 is"),
                 "controls disagree on where its way begins; expected G91",
@@ -196,7 +164,7 @@ impl Reader {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
         let mut end = match self.track.known() {
             Some(here) => here,
-            None if self.uncertain => return Ok(()),
+            None if self.seen.uncertain => return Ok(()),
             None => {
                 return Err(NcProblem::syntax(format!(
                     "{name} from an unknown position: expected a move to X, Y and Z before it"
@@ -212,7 +180,7 @@ impl Reader {
         }
         let rapid = motion == MotionMode::Rapid;
         self.give(self.stroke_to(end, self.track.abc, rapid))?;
-        self.stretched = true;
+        self.pending.stretched = true;
         Ok(())
     }
 }

@@ -11,12 +11,12 @@ use crate::text::error::NcProblem;
 impl Reader {
     /// Executes a programmed move, beside it if cutter compensation is on.
     pub(crate) fn give(&mut self, stroke: Stroke) -> Result<(), NcProblem> {
-        self.stretched = false;
+        self.pending.stretched = false;
         self.track.go(stroke)
     }
 
     /// The diameter D in the table, or the tool's own.
-    pub(super) fn cutter_diameter(&self, d: Option<f64>) -> Result<f64, NcProblem> {
+    pub(super) fn cutter_diameter(&mut self, d: Option<f64>) -> Result<f64, NcProblem> {
         let number = match d {
             Some(d) => Self::tool_number(d)?,
             None => self.track.tool.unwrap_or(0),
@@ -24,9 +24,13 @@ impl Reader {
         let row = self.tools.get(number).or((number == 0).then(ToolRow::default));
         match row.map(|row| row.diameter).or(self.tools.diameter(number)) {
             Some(diameter) => Ok(diameter),
-            None => Err(NcProblem::syntax(format!(
-                "the diameter D{number} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or G41.1 D with the diameter"
-            ))),
+            None => {
+                let (register, wear) = (format!("D{number}"), self.tools.wear_alone);
+                let assumed = self.track.assume_diameter(&register, &register, self.unit(), wear);
+                assumed.ok_or_else(|| NcProblem::syntax(format!(
+                    "the diameter D{number} for cutter compensation is not known: expected --diameters D{number}=… (in a job: `diameters`), a tool table, or G41.1 D with the diameter"
+                )))
+            }
         }
     }
 
@@ -49,7 +53,7 @@ impl Reader {
             (true, None) => return Err(NcProblem::syntax("G41.1 without D: expected the tool's diameter")),
             (false, d) => self.cutter_diameter(d)?,
         };
-        let linuxcnc = self.controller == Some(Controller::LinuxCnc);
+        let linuxcnc = self.rules.controller == Some(Controller::LinuxCnc);
         let side = CompensationSettings {
             left: left != (diameter < 0.0),
             radius: 0.5 * diameter.abs(),

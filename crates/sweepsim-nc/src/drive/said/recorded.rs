@@ -1,17 +1,41 @@
 //! What a program does besides moving, where it is called from, and its end: as much as may be kept.
 
-use super::contour::ProgramPlace;
-use super::trace::Canonical;
-use super::track::Track;
+use std::borrow::Cow;
+
+use crate::drive::contour::ProgramPlace;
+use crate::drive::trace::Canonical;
+use crate::drive::track::Track;
 use crate::model::event::{Event, EventKind, MOST_TEXT};
 use crate::model::positions::ProgramPositions;
-use crate::model::program::{Call, Program};
+use crate::model::program::{Call, NoteKind, Program};
 use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The most calls: bounds the memory that a file of a few bytes can demand.
 const MOST_CALLS: usize = 5_000_000;
 
 impl Track {
+    pub fn note(&mut self, message: impl Into<Cow<'static, str>>) {
+        let message = message.into();
+        if NoteKind::of(&message) != NoteKind::Read {
+            self.doubt();
+        }
+        self.notes.add(self.place.line, message);
+    }
+
+    /// Something of this block was assumed, left out or ignored.
+    pub(in crate::drive) fn doubt(&mut self) {
+        if !std::mem::replace(&mut self.doubted, true) {
+            self.program.understood = self.program.understood.saturating_sub(1);
+        }
+    }
+
+    /// A block is executed.
+    pub fn begin_block(&mut self) {
+        self.program.blocks += 1;
+        self.program.understood += 1;
+        self.doubted = false;
+    }
+
     /// Something that happens after the moves so far.
     pub fn event(&mut self, kind: EventKind) -> Result<(), NcProblem> {
         if let EventKind::Message(text) = &kind {
@@ -50,7 +74,7 @@ impl Track {
     }
 
     /// Whether there may be one more pose or event than `count`.
-    pub(super) fn check_room(&self, count: usize) -> Result<(), NcProblem> {
+    pub(in crate::drive) fn check_room(&self, count: usize) -> Result<(), NcProblem> {
         if count < self.most_poses {
             return Ok(());
         }
@@ -61,7 +85,7 @@ impl Track {
         ))
     }
 
-    pub(super) fn record(&mut self, kind: EventKind) -> Result<(), NcProblem> {
+    pub(in crate::drive) fn record(&mut self, kind: EventKind) -> Result<(), NcProblem> {
         self.check_room(self.program.events.len())?;
         let mut event = Event::new(self.program.poses.len(), self.place.line, kind);
         (event.file, event.call) = (self.place.file, self.place.call);
@@ -124,6 +148,11 @@ impl Track {
     }
 
     pub fn finish(mut self) -> Program {
+        self.assume_offsets();
+        self.program.assumptions = self.assumptions.finish();
+        for assumption in &self.program.assumptions {
+            self.notes.add(assumption.line, assumption.to_string());
+        }
         self.program.notes = self.notes.finish();
         let machine = &mut self.program.machine;
         machine.table = machine.table.or(self.driver.implied_table());

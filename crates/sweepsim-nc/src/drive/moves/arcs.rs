@@ -2,9 +2,9 @@
 
 use sweepsim_motion::{Move, TipArc, TipCourse, Turning};
 
-use super::circular_arc::Arc;
-use super::driver::Coordinates;
-use super::track::Track;
+use crate::drive::circular_arc::Arc;
+use crate::drive::driver::Coordinates;
+use crate::drive::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
 
@@ -15,7 +15,12 @@ impl Track {
     }
 
     /// A feed move of the tool along an arc from where it is, while the rotary axes turn to `abc` or the tool into a direction.
-    pub(super) fn bend(&mut self, arc: &Arc, abc: [f64; 3], direction: Option<[f64; 3]>) -> Result<(), NcProblem> {
+    pub(in crate::drive) fn bend(
+        &mut self,
+        arc: &Arc,
+        abc: [f64; 3],
+        direction: Option<[f64; 3]>,
+    ) -> Result<(), NcProblem> {
         let Some(scale) = self.frame.scale() else {
             return Err(NcProblem::unsupported(
                 "arcs in coordinates with unequal scales are",

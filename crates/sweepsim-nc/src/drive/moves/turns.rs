@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::driver::Coordinates;
-use super::track::Track;
+use crate::drive::driver::Coordinates;
+use crate::drive::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
 
@@ -18,16 +18,22 @@ impl Track {
         }
         if self.driver.knows_rotaries() {
             let abc = self.driver.angles(direction, self.abc)?;
-            if let Some(rapid) = rapid
-                && self.turn_in_place(abc, rapid)?
-            {
-                return Ok(false);
-            }
-            self.abc = abc;
-            self.direct = None;
-        } else {
-            self.direct = Some(direction);
+            return self.turn_to_angles(abc, rapid);
         }
+        self.direct = Some(direction);
+        self.leave([true; 3]);
+        Ok(true)
+    }
+
+    /// Turns the rotary axes to angles, as [`turn_to`](Self::turn_to) does.
+    pub fn turn_to_angles(&mut self, abc: [f64; 3], rapid: Option<bool>) -> Result<bool, NcProblem> {
+        if let Some(rapid) = rapid
+            && self.turn_in_place(abc, rapid)?
+        {
+            return Ok(false);
+        }
+        self.abc = abc;
+        self.direct = None;
         self.leave([true; 3]);
         Ok(true)
     }

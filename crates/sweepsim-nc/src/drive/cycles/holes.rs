@@ -4,9 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use super::circular_arc::Arc;
-use super::contour::ArcPlane;
-use super::track::Track;
+use crate::drive::circular_arc::Arc;
+use crate::drive::contour::ArcPlane;
+use crate::drive::track::Track;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
@@ -120,7 +120,7 @@ impl HolePlace {
         }
     }
 
-    fn point(&self, aside: [f64; 2], level: f64) -> [f64; 3] {
+    pub(super) fn point(&self, aside: [f64; 2], level: f64) -> [f64; 3] {
         let [u, v, w] = &self.axes;
         std::array::from_fn(|k| self.origin[k] + level * w[k] + aside[0] * u[k] + aside[1] * v[k])
     }
@@ -153,7 +153,7 @@ impl Track {
     }
 
     /// Makes a hole where the tool is, as a call; nothing where an earlier problem has made that unknown.
-    pub fn hole_here(&mut self, cycle: &HoleCycle, plane: ArcPlane, uncertain: bool) -> Result<(), NcProblem> {
+    pub(super) fn hole_here(&mut self, cycle: &HoleCycle, plane: ArcPlane, uncertain: bool) -> Result<(), NcProblem> {
         match self.known() {
             Some(here) => {
                 self.calls()?;
