@@ -16,6 +16,8 @@ pub(super) type Held = SmallVec<[bool; 12]>;
 
 /// As many stretches are tried for a patch, those deepest around its middle.
 const TRIED: usize = 3;
+/// How much a place nearer to the axis counts, beside one that is deeper.
+const AXIS: f64 = 0.05;
 /// Steps of a search for the best time.
 const STEPS: usize = 12;
 /// Times at which a motion that turns or bends is looked at first.
@@ -26,6 +28,8 @@ const MOST_PARTS: usize = 500;
 /// A stretch of a solid, and how far outside of it a point is at the best time that was found.
 struct Candidate<'a> {
     level: f64,
+    /// The least comes first: where a point is, and the axis is near. Over a floor many are as deep.
+    order: f64,
     solid: &'a (Run<'a>, Level),
     stretch: &'a Stretch,
     time: f64,
@@ -51,6 +55,7 @@ impl<'a> Course<'a> {
                 let (value, time) = quick(level, stretch, middle);
                 all.push(Candidate {
                     level: value,
+                    order: value + AXIS * from_axis(&stretch.at(time), middle),
                     solid,
                     stretch,
                     time,
@@ -83,14 +88,14 @@ impl Removed<'_> {
         for course in &self.courses {
             course.candidates(points, middle, &mut all);
         }
-        let by_level = |a: &Candidate, b: &Candidate| a.level.total_cmp(&b.level);
+        let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order);
         if all.len() > TRIED {
-            all.select_nth_unstable_by(TRIED, by_level);
+            all.select_nth_unstable_by(TRIED, in_order);
             all.truncate(TRIED);
         }
-        all.sort_by(by_level);
-        let is_removed = all.first().is_some_and(|best| best.level <= -self.margin);
-        let mut held = all.iter().map(|candidate| self.held_by(points, middle, candidate));
+        all.sort_by(in_order);
+        let is_removed = all.iter().any(|own| own.level <= -self.margin);
+        let mut held = all.iter().map(|candidate| self.held_by(points, candidate));
         let Some(first) = held.next().filter(|held| held.contains(&true)) else {
             return (points.iter().map(|_| false).collect(), is_removed);
         };
@@ -101,7 +106,7 @@ impl Removed<'_> {
         (held.find(is_whole).unwrap_or(first), is_removed)
     }
 
-    fn held_by(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, candidate: &Candidate) -> Held {
+    fn held_by(&self, points: &[Vector3<f64>], candidate: &Candidate) -> Held {
         let (_, level) = candidate.solid;
         let stretch = candidate.stretch;
         if stretch.is_straight() {
@@ -110,10 +115,7 @@ impl Removed<'_> {
             own.map(|point| best(level, stretch, point, -self.margin) <= -self.margin)
                 .collect()
         } else {
-            let near = 1.0 / TIMES as f64;
-            let (from, to) = ((candidate.time - near).max(0.0), (candidate.time + near).min(1.0));
-            let time = best_time(level, stretch, middle, from, to);
-            let at = stretch.at(time);
+            let at = stretch.at(best_time(level, stretch, points, candidate.time));
             let own = points.iter();
             own.map(|point| level_at(level, &at, point) <= -self.margin).collect()
         }
@@ -123,6 +125,12 @@ impl Removed<'_> {
     pub fn misses(&self, point: &Vector3<f64>) -> bool {
         self.courses.iter().all(|course| course.misses(point, self.margin))
     }
+}
+
+/// How far a point is from the axis.
+fn from_axis(at: &Placement, point: &Vector3<f64>) -> f64 {
+    let off = point - at.tip;
+    (off - at.axis * off.dot(&at.axis)).norm()
 }
 
 fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f64 {
@@ -149,7 +157,9 @@ fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
         (0..=TIMES).map(|k| k as f64 / TIMES as f64).collect()
     };
     let all = times.into_iter().map(of);
-    all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0.0))
+    let order = |(value, time): &(f64, f64)| value + AXIS * from_axis(&stretch.at(*time), point);
+    all.min_by(|a, b| order(a).total_cmp(&order(b)))
+        .unwrap_or((f64::INFINITY, 0.0))
 }
 
 /// The least level of a point that was found, or the first that is low enough. Along a straight stretch it is convex.
@@ -173,8 +183,15 @@ fn best(level: &Level, stretch: &Stretch, point: &Vector3<f64>, enough: f64) -> 
     least.min(of(from)).min(of(to))
 }
 
-fn best_time(level: &Level, stretch: &Stretch, point: &Vector3<f64>, mut from: f64, mut to: f64) -> f64 {
-    let of = |time: f64| level_at(level, &stretch.at(time), point);
+/// A time near another at which the outermost of some points is far inside.
+fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f64) -> f64 {
+    let of = |time: f64| {
+        let at = stretch.at(time);
+        let levels = points.iter().map(|point| level_at(level, &at, point));
+        levels.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let step = 1.0 / TIMES as f64;
+    let (mut from, mut to) = ((near - step).max(0.0), (near + step).min(1.0));
     for _ in 0..STEPS {
         let third = (to - from) / 3.0;
         if of(from + third) < of(to - third) {
