@@ -21,7 +21,7 @@ const AXIS: f64 = 0.05;
 /// Steps of a search for the best time.
 const STEPS: usize = 12;
 /// Times at which a motion that turns or bends is looked at first.
-const TIMES: usize = 8;
+const TIMES: usize = 4;
 /// Parts of time into which a stretch is divided to tell that a point was missed.
 const MOST_PARTS: usize = 500;
 
@@ -142,24 +142,40 @@ fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f64 {
 /// A time at which a point is far inside, without a search; and the level then.
 fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
     let of = |time: f64| (level_at(level, &stretch.at(time), point), time);
-    let times: SmallVec<[f64; TIMES + 1]> = if stretch.is_straight() {
+    if stretch.is_straight() {
         let [from, to] = &stretch.ends;
         let way = to.tip - from.tip;
         let across = way - from.axis * way.dot(&from.axis);
         let length = across.norm_squared();
-        let nearest = if length > 0.0 {
+        return of(if length > 0.0 {
             ((point - from.tip).dot(&across) / length).clamp(0.0, 1.0)
         } else {
             0.5
-        };
-        [nearest].into_iter().collect()
-    } else {
-        (0..=TIMES).map(|k| k as f64 / TIMES as f64).collect()
-    };
-    let all = times.into_iter().map(of);
-    let order = |(value, time): &(f64, f64)| value + AXIS * from_axis(&stretch.at(*time), point);
-    all.min_by(|a, b| order(a).total_cmp(&order(b)))
-        .unwrap_or((f64::INFINITY, 0.0))
+        });
+    }
+    // Where many are as deep, that with the axis nearest.
+    let order = |time: f64| of(time).0 + AXIS * from_axis(&stretch.at(time), point);
+    let step = 1.0 / TIMES as f64;
+    let times = (0..=TIMES).map(|k| k as f64 * step);
+    let near = times.min_by(|a, b| order(*a).total_cmp(&order(*b))).unwrap_or(0.5);
+    of(lowest(
+        order,
+        [(near - step).max(0.0), (near + step).min(1.0)],
+        STEPS / 2,
+    ))
+}
+
+/// About where a function is least that falls, and then rises.
+fn lowest(of: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2], steps: usize) -> f64 {
+    for _ in 0..steps {
+        let third = (to - from) / 3.0;
+        if of(from + third) < of(to - third) {
+            to -= third;
+        } else {
+            from += third;
+        }
+    }
+    0.5 * (from + to)
 }
 
 /// The least level of a point that was found, or the first that is low enough. Along a straight stretch it is convex.
@@ -190,17 +206,8 @@ fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f6
         let levels = points.iter().map(|point| level_at(level, &at, point));
         levels.fold(f64::NEG_INFINITY, f64::max)
     };
-    let step = 1.0 / TIMES as f64;
-    let (mut from, mut to) = ((near - step).max(0.0), (near + step).min(1.0));
-    for _ in 0..STEPS {
-        let third = (to - from) / 3.0;
-        if of(from + third) < of(to - third) {
-            to -= third;
-        } else {
-            from += third;
-        }
-    }
-    0.5 * (from + to)
+    let step = 0.5 / TIMES as f64;
+    lowest(of, [(near - step).max(0.0), (near + step).min(1.0)], STEPS)
 }
 
 /// Whether a point is outside of a solid all along a stretch: levels change no faster than the point moves against it.

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
-use sweepsim_motion::{Path, Pose, Tool};
+use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
 use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
 
 const LIMITS: Limits = Limits {
@@ -172,4 +172,75 @@ fn what_random_rasters_leave_is_enclosed() {
 #[ignore = "takes minutes"]
 fn what_four_hundred_random_rasters_leave_is_enclosed() {
     rasters(400);
+}
+
+/// A round pocket, its wall of so many flat sides, in a block.
+fn pocket(radius: f64, sides: usize, floor: f64) -> TriangleSoup {
+    let at = |k: usize, z: f64| {
+        let angle = std::f64::consts::TAU * (k % sides) as f64 / sides as f64;
+        [radius * angle.cos(), radius * angle.sin(), z]
+    };
+    // The outside has a corner for each side, on a square.
+    let outer = |k: usize, z: f64| {
+        let [x, y, _] = at(k, z);
+        let scale = 25.0 / x.abs().max(y.abs());
+        [x * scale, y * scale, z]
+    };
+    let mut triangles = Vec::new();
+    let mut quad = |[a, b, c, d]: [[f64; 3]; 4]| triangles.extend([[a, b, c], [a, c, d]]);
+    for k in 0..sides {
+        quad([outer(k, 0.0), outer(k + 1, 0.0), at(k + 1, 0.0), at(k, 0.0)]);
+        quad([at(k, 0.0), at(k + 1, 0.0), at(k + 1, floor), at(k, floor)]);
+        quad([outer(k, -20.0), outer(k + 1, -20.0), outer(k + 1, 0.0), outer(k, 0.0)]);
+    }
+    for k in 0..sides {
+        triangles.push([[0.0, 0.0, floor], at(k, floor), at(k + 1, floor)]);
+        triangles.push([[0.0, 0.0, -20.0], outer(k + 1, -20.0), outer(k, -20.0)]);
+    }
+    TriangleSoup { triangles }
+}
+
+#[test]
+fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
+    let up = [0.0, 0.0, 1.0];
+    let pose = |tip: [f64; 3]| Pose::new(tip, up).expect("a pose");
+    let mut poses = vec![pose([5.0, 0.0, 1.0]), pose([5.0, 0.0, -7.0])];
+    let mut moves = vec![Move::default()];
+    for radius in [5.0, 10.0] {
+        let start = [radius, 0.0, -7.0];
+        poses.push(pose(start));
+        moves.push(Move::default());
+        poses.push(pose(start));
+        moves.push(Move::arc(
+            TipArc::new([0.0, 0.0, -7.0], up, std::f64::consts::TAU).expect("a circle"),
+        ));
+    }
+    let path = Path::with_moves(poses, moves).expect("a path");
+    let solids = cover(&Tool::flat(6.0, 30.0).expect("a tool"), 1e-4);
+    let cutter = Cutter {
+        solids: &solids,
+        path: &path,
+        others: None,
+    };
+    let stock = Stock::Block {
+        min: [-25.0, -25.0, -20.0],
+        max: [25.0, 25.0, 0.0],
+    };
+    // The corners between the sides are on the circle.
+    let target = Target::new(&pocket(16.0, 72, -7.0)).expect("closed");
+    let limits = Limits {
+        depth: 0.05,
+        width: 0.005,
+        pairs: 500_000,
+    };
+    let found = highest(&target, &stock, &[cutter], &limits, &());
+    let found = found.expect("a stock").expect("not cancelled");
+    assert!(
+        found.bound <= limits.depth,
+        "{:?} {} {:?} {}",
+        found.highest,
+        found.bound,
+        found.open.first(),
+        found.open_count
+    );
 }
