@@ -116,7 +116,8 @@ fn programs_in_words() {
     );
 }
 
-/// What a shop's program leaves open: said by `inspect`, and by the report of `verify`; settled by options, refused by `--strict`.
+/// What a shop's program leaves open: said by `inspect` and by the report of `verify`, settled by options, refused by
+/// `--strict`.
 #[test]
 fn what_programs_leave_open() {
     let folder = Workdir::new("");

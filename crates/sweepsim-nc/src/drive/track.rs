@@ -8,7 +8,7 @@ use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 use super::contour::{Contour, ProgramPlace};
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
-use super::unknowns::{Cutters, Elsewhere, LeftOut};
+use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
@@ -57,6 +57,10 @@ pub(crate) struct Track {
     pub(super) text: usize,
     /// Whether something of the block was assumed, left out or ignored.
     pub(super) doubted: bool,
+    /// Whether there is a feed move yet.
+    pub(super) has_fed: bool,
+    /// The frame of the moves.
+    pub(super) used: Option<Frame>,
     pub(super) strict: bool,
     pub(super) cutters: Cutters,
     pub(super) assumptions: AssumptionList,
@@ -105,6 +109,8 @@ impl Track {
             contour: Contour::default(),
             text: 0,
             doubted: false,
+            has_fed: false,
+            used: None,
             strict: options.strict,
             cutters: Cutters::new(options),
             assumptions: AssumptionList::default(),
@@ -326,20 +332,6 @@ impl Track {
         }
         self.arrive(target, abc);
         Ok(())
-    }
-
-    /// The start of a feed move, if the path does not lead there.
-    pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
-        if rapid || self.joined || self.of_poses {
-            return Ok(());
-        }
-        match self.known() {
-            Some(xyz) => self.push(Position::new(self.frame.point(xyz), self.abc), Move::default(), true),
-            None => {
-                self.note("the start of this feed move is unknown: the path begins at its end");
-                Ok(())
-            }
-        }
     }
 
     pub(super) fn arrive(&mut self, xyz: [f64; 3], abc: [f64; 3]) {

@@ -1,7 +1,7 @@
 //! What programs leave to the control: which work offsets there are and where, and how wide tools are.
 //!
 //! The moves of a program have one frame: that of the machine, where the program or the control's variables set the offsets in use, else the part's, which is that of
-//! the first offset that nothing sets. Another such offset is somewhere that only the machine knows.
+//! the first offset that nothing sets and something is cut in. Another such offset is somewhere that only the machine knows.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -42,8 +42,6 @@ pub(crate) struct WorkOffsets {
     placed: BTreeMap<WorkOffset, Placed>,
     /// Those that the user places in the frame of the part.
     given: BTreeSet<WorkOffset>,
-    /// The frame of the moves so far.
-    pub(in crate::drive) used: Option<Frame>,
     pub(in crate::drive) name: fn(WorkOffset) -> String,
 }
 
@@ -54,7 +52,6 @@ impl WorkOffsets {
             active: 0,
             placed: BTreeMap::new(),
             given: BTreeSet::new(),
-            used: None,
             name,
         };
         for number in (0..most).filter(|_| !options.offsets.is_empty()) {
@@ -111,6 +108,9 @@ impl WorkOffsets {
 #[derive(Clone, Debug)]
 pub(in crate::drive) struct Elsewhere {
     pub(in crate::drive) name: String,
+    pub(in crate::drive) frame: Frame,
+    /// The offset of the moves before, if only the machine knows that too.
+    pub(in crate::drive) before: Option<String>,
     /// Where the tool is in the frame of the other moves, along axes that have not moved since.
     pub(in crate::drive) kept: [Option<f64>; 3],
 }

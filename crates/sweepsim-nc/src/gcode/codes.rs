@@ -1,12 +1,10 @@
 //! The meaning of G and M codes.
 
 use super::offsets::EXTENDED;
-use super::okuma;
 use super::syntax::block::Block;
 use crate::drive::{ArcPlane, WorkOffset};
 use crate::model::event::Coolant;
 use crate::model::program::FeedMode;
-use crate::model::read_options::Controller;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,10 +138,7 @@ pub(crate) enum Code {
 }
 
 /// The meaning of `G value` in a block: some codes mean different things with different words, on different controls.
-pub(crate) fn g_in(value: f64, block: &Block, controller: Option<Controller>) -> Code {
-    if let Some(code) = okuma::code(value, block).filter(|_| controller == Some(Controller::Okuma)) {
-        return code;
-    }
+pub(crate) fn g_in(value: f64, block: &Block) -> Code {
     const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
     let given = |letters: &str| letters.chars().any(|letter| block.has(letter));
     match g(value) {

@@ -9,7 +9,7 @@ use super::offsets::OKUMA;
 use super::syntax::block::Block;
 
 /// The meaning of `G value` where it is another than elsewhere.
-pub(super) fn code(value: f64, block: &Block) -> Option<Code> {
+pub(crate) fn code(value: f64, block: &Block) -> Option<Code> {
     if value.fract() != 0.0 || !(0.0..=999.0).contains(&value) {
         return None;
     }
@@ -35,7 +35,7 @@ pub(super) fn code(value: f64, block: &Block) -> Option<Code> {
 }
 
 /// The angles of `CALL OO88 PA= PB= PC=`, in whatever order; `None` for another call.
-pub(super) fn turned_offset(call: &str) -> Option<[f64; 3]> {
+pub(crate) fn turned_offset(call: &str) -> Option<[f64; 3]> {
     let rest = call.trim_start().strip_prefix("OO88")?;
     let angle = |name: &str| {
         let at = rest.find(name)? + name.len();
@@ -49,7 +49,7 @@ pub(super) fn turned_offset(call: &str) -> Option<[f64; 3]> {
 }
 
 /// The name and the arguments of a call: `CALL OO88 PA=90`, with a block number before it or not.
-pub(super) fn call(line: &str) -> Option<&str> {
+pub(crate) fn call(line: &str) -> Option<&str> {
     let line = line.trim_start().trim_start_matches('/');
     let line = match line.strip_prefix(['N', 'n']) {
         Some(rest) => rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start(),

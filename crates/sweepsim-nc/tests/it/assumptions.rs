@@ -263,3 +263,18 @@ fn a_thousand_problems_are_one_line_each() {
     assert!(program.notes.iter().any(|note| note.message.contains("1000 times")));
     assert_eq!((program.blocks, program.blocks - program.understood), (4001, 2000));
 }
+
+#[test]
+fn the_part_is_where_something_is_cut() {
+    // The program begins by parking: its rapids there are left out, not its cuts.
+    let text = "T1 M6\nG59 G0 X0 Y0 Z5\nX12\nM3 S100\nG54 G0 X1 Y1 Z5\nG1 Z-1 F100\nG59 G0 X0\n";
+    let program = read(text);
+    assert_eq!(tips(&program), [[1.0, 1.0, 5.0], [1.0, 1.0, -1.0]]);
+    let parking = only(&program);
+    assert_eq!(
+        (parking.what.as_str(), parking.line, parking.changes_verdict),
+        ("the place of G59", 2, false)
+    );
+    assert!(program.events.iter().all(|event| event.pose == 0));
+    assert!(strict(text).contains("a move in G54"));
+}

@@ -2,8 +2,13 @@
 
 use std::rc::Rc;
 
+use sweepsim_motion::Move;
+
 use crate::drive::track::Track;
 use crate::drive::unknowns::{Elsewhere, Frame, LeftOut, WorkOffsets};
+use crate::machines::Position;
+use crate::model::poses::ProgramPoses;
+use crate::model::positions::ProgramPositions;
 use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 use crate::text::numbers::rounded;
@@ -13,10 +18,10 @@ impl Track {
     /// Before a move in the active work offset: it must be known relative to those before, or the move is left out.
     pub fn use_offset(&mut self, offsets: &mut WorkOffsets) -> Result<(), NcProblem> {
         let frame = offsets.active_frame();
-        let before = *offsets.used.get_or_insert(frame);
+        let before = *self.used.get_or_insert(frame);
         let agree = match (before, frame) {
             (Frame::Part(None), Frame::Part(Some(_))) => {
-                offsets.used = Some(frame);
+                self.used = Some(frame);
                 true
             }
             (Frame::Part(_), Frame::Part(None)) => true,
@@ -32,11 +37,61 @@ impl Track {
                 "only the machine knows the distance between them; expected one work offset, or G10 L2 for each before its first move",
             ));
         }
-        self.go_elsewhere((offsets.name)(offsets.active));
+        let before = match before {
+            Frame::Part(Some(number)) => Some((offsets.name)(number)),
+            _ => None,
+        };
+        self.go_elsewhere((offsets.name)(offsets.active), frame, before);
         Ok(())
     }
 
-    fn go_elsewhere(&mut self, name: String) {
+    /// The start of a feed move, if the path does not lead there.
+    pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
+        if !rapid {
+            self.cut_here();
+        }
+        if rapid || self.joined || self.of_poses {
+            return Ok(());
+        }
+        match self.known() {
+            Some(xyz) => self.push(Position::new(self.frame().point(xyz), self.abc), Move::default(), true),
+            None => {
+                self.note("the start of this feed move is unknown: the path begins at its end");
+                Ok(())
+            }
+        }
+    }
+
+    /// Before a feed move: the part is where something is cut first. Rapids before in another offset that only the machine knows are left out.
+    fn cut_here(&mut self) {
+        if std::mem::replace(&mut self.has_fed, true) {
+            return;
+        }
+        let Some(Elsewhere {
+            name,
+            frame,
+            before: Some(before),
+            ..
+        }) = self.elsewhere.clone()
+        else {
+            return;
+        };
+        self.used = Some(frame);
+        self.elsewhere = None;
+        self.left_out.remove(&name);
+        let first = self.program.poses.in_order().next();
+        let first = first.map_or((self.place.file, self.place.line), |pose| (pose.file, pose.line));
+        self.left_out.entry(before).or_insert(LeftOut {
+            first,
+            ..LeftOut::default()
+        });
+        self.program.poses = ProgramPoses::default();
+        self.program.positions = ProgramPositions::default();
+        self.program.events.iter_mut().for_each(|event| event.pose = 0);
+        self.joined = false;
+    }
+
+    fn go_elsewhere(&mut self, name: String, frame: Frame, before: Option<String>) {
         if self.elsewhere.as_ref().is_some_and(|elsewhere| elsewhere.name == name) {
             return;
         }
@@ -48,7 +103,12 @@ impl Track {
         };
         self.left_out.entry(name.clone()).or_insert(left);
         self.doubt();
-        self.elsewhere = Some(Elsewhere { name, kept });
+        self.elsewhere = Some(Elsewhere {
+            name,
+            frame,
+            before,
+            kept,
+        });
         self.xyz = [None; 3];
         self.joined = false;
     }

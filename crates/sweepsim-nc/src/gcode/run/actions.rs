@@ -53,6 +53,9 @@ impl Reader {
             }
             Code::SetOffsets => self.set_offsets(block, words)?,
             Code::ReturnLevel => self.modes.return_level = words[2],
+            Code::Probe if words.iter().all(Option::is_none) => {
+                return Err(NcProblem::syntax("probing without an axis: expected X, Y or Z"));
+            }
             Code::Probe => self.probe(words.map(|word| word.is_some())),
             Code::LocalShift => {
                 if turns(block) {

@@ -4,6 +4,7 @@ use super::control::calls::SourceLine;
 use super::interpreter::{Reader, Step};
 use crate::drive::Sense;
 use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode};
+use crate::gcode::okuma;
 use crate::gcode::syntax::block::{Block, Word};
 use crate::model::program::Units;
 use crate::model::read_options::Controller;
@@ -186,7 +187,8 @@ impl Reader {
         }
         for &word in block.words().iter().filter(|word| word.letter == 'G') {
             let fail = |problem| Err((problem, word.span()));
-            let code = match codes::g_in(word.value, block, self.rules.controller) {
+            let okuma = okuma::code(word.value, block).filter(|_| self.rules.controller == Some(Controller::Okuma));
+            let code = match okuma.unwrap_or_else(|| codes::g_in(word.value, block)) {
                 Code::Probe if self.track.strict() => Code::Refused("probing is"),
                 code => code,
             };
