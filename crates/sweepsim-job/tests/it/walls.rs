@@ -77,12 +77,22 @@ fn gouge() -> Vec<(String, Option<usize>)> {
 /// Enclosures are no wider than a tenth of the limit.
 const NARROW: f64 = 0.1 * LIMIT;
 
+/// The state of what is said of excess everywhere: the height is in its enclosure.
+fn left(outcome: &Outcome, height: f64) -> StatementState {
+    let statements = outcome.report().statements.as_deref().expect("statements");
+    let statement = &statements[1];
+    let [least, most] = statement.enclosure;
+    assert_eq!((statement.about.as_str(), statement.limit), ("excess", LIMIT));
+    assert!(least <= height && height <= most, "{height} in {least} … {most}");
+    assert!(most - least <= NARROW + EXACT, "{least} … {most}");
+    statement.state
+}
+
 /// The state of what is said of gouges everywhere: the depth is in its enclosure, no wider than this.
 fn proven(outcome: &Outcome, depth: f64, width: f64) -> StatementState {
     let statements = outcome.report().statements.as_deref().expect("statements");
-    let [statement] = statements else {
-        panic!("{statements:?}")
-    };
+    assert_eq!(statements.len(), 2, "{statements:?}");
+    let statement = &statements[0];
     let [least, most] = statement.enclosure;
     assert!(least <= depth && depth <= most, "{depth} in {least} … {most}");
     assert!(most - least <= width, "{least} … {most}");
@@ -106,6 +116,7 @@ fn the_right_slot_passes() {
     assert_eq!(outcome.verdict(), Some(Verdict::Pass));
     assert!(largest.iter().all(|largest| *largest < EXACT), "{largest:?}");
     assert_eq!(proven(&outcome, 0.0, NARROW), StatementState::Proven);
+    assert_eq!(left(&outcome, 0.0), StatementState::Proven);
 }
 
 #[test]
@@ -123,6 +134,7 @@ fn faults_of_walls_and_floors_are_found() {
         assert!((deepest - depth).abs() < EXACT, "{deepest} instead of {depth}");
         assert!(highest < EXACT, "{highest}");
         assert_eq!(proven(&outcome, depth, NARROW), StatementState::Refuted);
+        assert_eq!(left(&outcome, 0.0), StatementState::Proven);
     }
     // Within the limits.
     for (sides, floor) in [([15.019, 25.0], -4.0), ([15.0, 25.0], -3.981)] {
@@ -146,6 +158,17 @@ fn what_is_left_standing_along_a_wall_is_found() {
     assert_eq!(regions.len(), 1);
     let volume = regions[0].volume;
     assert!((volume - 60.0 * 4.0 * 0.08).abs() < 1e-3, "{volume}");
+    assert_eq!(left(&outcome, 0.1), StatementState::Refuted);
+    // Along z alone no line is in it: the proof finds it.
+    for (off, state) in [(0.1, StatementState::Refuted), (0.019, StatementState::Proven)] {
+        let along_z = request(slotted([15.0 - off, 25.0], -4.0)).directions(Directions::Z);
+        let outcome = along_z.plan().unwrap().run(&()).unwrap();
+        assert_eq!(left(&outcome, off), state);
+        let (findings, _) = found(&outcome);
+        let own = (state == StatementState::Refuted).then(|| ("excess".to_owned(), None));
+        assert_eq!(findings, own.into_iter().collect::<Vec<_>>());
+        assert!(outcome.findings().iter().all(|finding| finding.between));
+    }
 }
 
 #[test]

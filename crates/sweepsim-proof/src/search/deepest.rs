@@ -7,7 +7,7 @@ use super::reach::During;
 use super::trace::{Reason, Trace};
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
-use crate::statement::{OpenBox, Witness};
+use crate::statement::Witness;
 use nalgebra::Vector3;
 use std::collections::BinaryHeap;
 
@@ -361,24 +361,7 @@ impl<'a> Search<'a> {
         if self.found.open.len() == MOST_OPEN {
             return;
         }
-        let (first, last) = match pair.when {
-            When::Node(number) => {
-                let node = &self.run.nodes[number];
-                let [a, b] = [node.first, node.last - 1].map(|k| &self.run.stretches[k]);
-                ((a.number, a.time(0.0)), (b.number, b.time(1.0)))
-            }
-            When::Part { stretch, times } => {
-                let stretch = &self.run.stretches[stretch];
-                let [from, to] = times.map(|t| (stretch.number, stretch.time(t)));
-                (from, to)
-            }
-        };
-        self.found.open.push(OpenBox {
-            first,
-            last,
-            low: cell.centre.map(|c| c - cell.half).into(),
-            high: cell.centre.map(|c| c + cell.half).into(),
-            depth: depth + self.wanted.allowance,
-        });
+        let open = pair.open(self.run, depth + self.wanted.allowance);
+        self.found.open.push(open);
     }
 }

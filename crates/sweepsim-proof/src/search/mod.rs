@@ -1,10 +1,12 @@
 //! The searches for the deepest point and for the nearest.
 
+mod apart;
 mod bound;
 mod closest;
 mod deepest;
 mod found;
 mod gouge;
+mod nearest;
 mod pair;
 mod reach;
 mod trace;

@@ -282,10 +282,16 @@ fn the_bracket_is_proven_and_the_faulty_one_refuted() {
         assert_eq!(output.status.code(), Some(code), "{}", text(&output.stdout));
         let report = fs::read(folder.path(&format!("{job}/report.json"))).unwrap();
         let report: Report = serde_json::from_slice(&report).unwrap();
-        let [statement] = report.statements.as_deref().unwrap() else {
+        let [statement, excess, holder, fixture] = report.statements.as_deref().unwrap() else {
             panic!("{:?}", report.statements)
         };
         assert_eq!((statement.state, statement.open_count), (state, 0));
+        assert_eq!(excess.about, "excess");
+        assert_eq!(excess.state, StatementState::Proven, "{excess:?}");
+        // Its holder goes into the step, and into the clamp.
+        for (body, about) in [(holder, "holder"), (fixture, "fixture")] {
+            assert_eq!((body.about.as_str(), body.state), (about, state), "{body:?}");
+        }
         // Chords of the round walls are cut by less than the limit.
         let [least, most] = statement.enclosure;
         assert!(0.0 < least && least <= most, "{least} {most}");

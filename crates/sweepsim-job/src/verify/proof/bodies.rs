@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 use sweepsim_formats::{Job, Measure, Statement, StatementState};
 use sweepsim_proof::{Closest, Convex, Cutter, Enclosed, Limits, Target, closest, cover, deepest};
 
+/// What goes no deeper into something than this touches it, in millimetres.
+const CONTACT: f64 = 1e-3;
 /// Distances are enclosed in so large a part of the clearance.
 const WIDTH: f64 = 0.1;
 
@@ -64,7 +66,7 @@ pub(super) fn beside_fixtures(session: Session, texts: &mut ProgramTexts) -> Res
         .iter()
         .map(|(solid, setup)| (solid.as_ref().map_err(String::clone), *setup))
         .collect();
-    let mut solids = cutters(job, CHORDS * floor(job));
+    let mut solids = cutters(job, CHORDS * contact(job));
     let bodies = bodies(job, tolerance(session));
     let mut proven = Vec::new();
     if clearance(session) > 0.0 && bodies.values().any(|own| !own.is_empty()) {
@@ -87,9 +89,13 @@ pub(super) fn beside_fixtures(session: Session, texts: &mut ProgramTexts) -> Res
     Ok(proven)
 }
 
+fn contact(job: &Job) -> f64 {
+    floor(job).max(CONTACT)
+}
+
 /// Concave outlines are replaced by chords within this.
 fn tolerance(session: Session) -> f64 {
-    CHORDS * clearance(session).max(floor(session.job))
+    CHORDS * clearance(session).max(contact(session.job))
 }
 
 /// A solid, or why it is none, and the set-up that it is there in.
@@ -174,7 +180,7 @@ fn kept_out(
     movers: &[Cutter],
     solids: &[Obstacle],
 ) -> Result<Proven, JobError> {
-    let (job, limit) = (session.job, floor(session.job));
+    let (job, limit) = (session.job, contact(session.job));
     let mut statement = Statement::new(about, limit);
     let wanted = Limits {
         depth: limit,
