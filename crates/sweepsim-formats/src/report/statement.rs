@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub struct Statement {
     /// `gouge`: no cutter goes deeper below the target than the limit; `excess`: nothing that hangs together with the
-    /// target stands higher above it; `fixture`: no cutter or body goes deeper into a fixture; `holder`: nor a body into
-    /// the target. The last two with [`Measure::Distance`]: no body comes nearer than the limit.
+    /// target stands higher above it; `fixture`: no cutter or body goes deeper into a fixture; `holder`: no body goes
+    /// deeper into the target. The last two with [`Measure::Distance`]: no body comes nearer than the limit.
     pub about: String,
     /// What is measured.
     #[serde(default, skip_serializing_if = "Measure::is_depth")]

@@ -35,8 +35,8 @@ impl Before {
         Ok(Self { shape, skin })
     }
 
-    /// Points whose hull has all of the stock that is in the hull of some points. `middle`: a point among them; `normal`:
-    /// a direction away from the stock, if they are beside it.
+    /// Points whose hull has all of the stock that is in the hull of some points. `middle`: a point among them;
+    /// `normal`: a direction away from the stock, if they are beside it.
     pub fn within(&self, mut points: Points, middle: &Vector3<f64>, normal: &Vector3<f64>) -> Points {
         if self.shape.misses(&points, (middle, normal), self.skin) {
             points.clear();

@@ -1,8 +1,8 @@
 //! The points at a distance from a solid, in patches.
 //!
-//! A point at the distance `d` from a solid has a nearest point on it: in a triangle, on an edge or at a corner. It lies
-//! from there along a direction between the normals of the triangles around (for a corner: their spherical hull), so
-//! every such point is in a patch of a triangle with its normal, of an edge with two, or of a corner with all of its.
+//! A point at the distance `d` from a solid has a nearest point on it: in a triangle, on an edge or at a corner. From
+//! there it lies along a direction between the normals of the triangles around (for a corner: in their spherical hull),
+//! so every such point is in a patch of a triangle with its normal, of an edge with two, or of a corner with all of its.
 //! Edges between triangles that turn inwards have no such point, nor have corners with only such edges.
 
 use crate::solid::Triangle;

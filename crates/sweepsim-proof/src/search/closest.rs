@@ -1,13 +1,13 @@
 //! How near bodies come to a solid, at every time.
 
 use super::gouge::{Cutter, Limits};
+use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::Run;
 use crate::solid::Target;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
@@ -35,12 +35,8 @@ const TOGETHER: usize = 64;
 const FIRST_LOOK: usize = 256;
 /// Every part of the work may look at so many pairs.
 const LEAST_PAIRS: usize = 4_000;
-/// A distance need not be known better than this part of it.
-const SHARE: f64 = 1.0 / 32.0;
 /// Coordinates of this size are exact to 1.
 const ROUNDING: f64 = 1e-12;
-/// As many open places are described, of each part of the work.
-pub(super) const MOST_OPEN: usize = 20;
 
 /// Encloses how near bodies on their paths come to a solid, `limits.depth` being the distance that is asked for. A body
 /// that touches the solid, or is inside of it, has the distance 0. `None` if the monitor cancelled the work.
@@ -58,8 +54,8 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
     let mut known = f64::INFINITY;
-    for look in 0..2 {
-        let pairs = match look {
+    for number in 0..2 {
+        let pairs = match number {
             0 => FIRST_LOOK,
             _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
         };
@@ -69,7 +65,7 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
                 return None;
             }
             let (path, moves) = &parts[*number];
-            let found = Found::of(target, &bodies[*path], moves.clone(), limits, (pairs, known));
+            let found = look(target, &bodies[*path], moves.clone(), limits, (pairs, known));
             monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Some(found)
         };
@@ -110,86 +106,26 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
     Some(all)
 }
 
-/// What is no nearer than this is done, if something is known to be at a distance.
-pub(super) fn enough(known: f64, limits: &Limits) -> f64 {
-    if known == f64::INFINITY {
-        return known;
-    }
-    let near = known - limits.width.max(known * SHARE);
-    // Whether the limit is kept must be known, not more.
-    if known >= limits.depth {
-        near.max(limits.depth).min(known)
-    } else {
-        near
-    }
-}
-
-#[derive(Default)]
-pub(super) struct Found {
-    nearest: Option<Witness>,
-    pub bound: f64,
-    pub open: Vec<OpenBox>,
-    pub open_count: usize,
-    moves: BTreeMap<usize, Witness>,
-    pub pairs: usize,
-}
-
-impl Found {
-    /// Nothing is near.
-    pub fn nothing() -> Self {
-        Self {
-            bound: f64::INFINITY,
-            ..Self::default()
+/// Of some moves of a body. `known`: so near something is.
+fn look(target: &Target, body: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Found {
+    let reach = body.solids.iter().map(Convex::reach).fold(0.0, f64::max);
+    let stretches = body.stretches(moves, limits.deviation());
+    let far = stretches
+        .iter()
+        .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
+    let rounding = ROUNDING * (far.fold(target.size, f64::max) + reach);
+    let mut all = Found::nothing();
+    for solid in body.solids {
+        let run = Run::new(solid, &stretches, rounding);
+        let search = Search::new(target, &run, limits, (known, rounding));
+        let found = search.run(pairs);
+        all.bound = all.bound.min(found.bound);
+        all.pairs += found.pairs;
+        all.open.extend(found.open);
+        all.open_count += found.open_count;
+        for witness in found.moves.into_values().chain(found.nearest) {
+            all.see(witness, limits.depth);
         }
     }
-
-    pub fn distance(&self) -> f64 {
-        self.nearest.as_ref().map_or(f64::INFINITY, |witness| witness.depth)
-    }
-
-    /// With what an earlier look has found of the same.
-    fn take(&mut self, earlier: Self) {
-        self.pairs += earlier.pairs;
-        self.bound = self.bound.max(earlier.bound);
-        for witness in earlier.nearest.into_iter().chain(earlier.moves.into_values()) {
-            self.see(witness, f64::NEG_INFINITY);
-        }
-    }
-
-    /// `limit`: nearer places are those of a move that comes too near.
-    pub fn see(&mut self, witness: Witness, limit: f64) {
-        if witness.depth < limit {
-            let known = self.moves.entry(witness.number).or_insert_with(|| witness.clone());
-            if witness.depth < known.depth {
-                *known = witness.clone();
-            }
-        }
-        if witness.depth < self.distance() {
-            self.nearest = Some(witness);
-        }
-    }
-
-    /// Of some moves of a body. `known`: so near something is.
-    fn of(target: &Target, body: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Self {
-        let reach = body.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-        let stretches = body.stretches(moves, limits.deviation());
-        let far = stretches
-            .iter()
-            .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
-        let rounding = ROUNDING * (far.fold(target.size, f64::max) + reach);
-        let mut all = Self::nothing();
-        for solid in body.solids {
-            let run = Run::new(solid, &stretches, rounding);
-            let search = Search::new(target, &run, limits, (known, rounding));
-            let found = search.run(pairs);
-            all.bound = all.bound.min(found.bound);
-            all.pairs += found.pairs;
-            all.open.extend(found.open);
-            all.open_count += found.open_count;
-            for witness in found.moves.into_values().chain(found.nearest) {
-                all.see(witness, limits.depth);
-            }
-        }
-        all
-    }
+    all
 }

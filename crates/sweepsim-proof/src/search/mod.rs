@@ -6,6 +6,7 @@ mod closest;
 mod deepest;
 mod found;
 mod gouge;
+mod near;
 mod nearest;
 mod pair;
 mod reach;

@@ -1,8 +1,8 @@
 //! Branch and bound over times and cells, for what is nearest.
 
 use super::apart::Apart;
-use super::closest::{Found, MOST_OPEN, enough};
 use super::gouge::Limits;
+use super::near::{Found, MOST_OPEN, enough};
 use super::pair::{Pair, When};
 use super::reach::During;
 use crate::motion::Run;
