@@ -2,8 +2,8 @@
 //!
 //! A point at the distance `d` from a solid has a nearest point on it: in a triangle, on an edge or at a corner. From
 //! there it lies along a direction between the normals of the triangles around (for a corner: in their spherical hull),
-//! so every such point is in a patch of a triangle with its normal, of an edge with two, or of a corner with all of its.
-//! Edges between triangles that turn inwards have no such point, nor have corners with only such edges.
+//! so every such point is in a patch of a triangle with its normal, of an edge with two, or of a corner with all its
+//! normals. Edges between triangles that turn inwards have no such point, nor have corners with only such edges.
 
 use crate::solid::Triangle;
 use nalgebra::Vector3;
