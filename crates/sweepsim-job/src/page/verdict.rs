@@ -40,7 +40,10 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
         (moves, _) => Verdict::bad(format!("May not be run: {} do harm.", counted(moves, "move"))),
     };
     verdict.details = found(findings);
-    verdict.details.extend(report.statements.iter().flatten().map(proven));
+    // The others are listed with their places.
+    let unlisted = report.statements.iter().flatten();
+    let unlisted = unlisted.filter(|statement| statement.witness.is_none() && statement.open.is_empty());
+    verdict.details.extend(unlisted.map(proven));
     if let Some(scope) = &report.scope {
         let lines = looked_at(scope);
         verdict

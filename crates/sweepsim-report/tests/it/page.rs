@@ -28,6 +28,7 @@ fn evil() -> Page {
             line: 4,
         }),
     }];
+    page.proofs = page.findings.clone();
     page.facts = vec![Fact::new(EVIL, EVIL, EVIL)];
     page.plots = vec![Plot {
         name: text(),
@@ -148,4 +149,30 @@ fn the_verdict_comes_first() {
 fn an_empty_page_is_a_page() {
     let html = Page::new("").html();
     assert!(html.contains("<main>") && !html.contains("id=\"canvas\""));
+}
+
+/// The scripts number what is listed: findings first, then proofs, each with its colour.
+#[test]
+fn proofs_are_listed_after_findings() {
+    let listed = |title: &str, kind: &str| Finding {
+        title: title.to_owned(),
+        kind: kind.to_owned(),
+        ..Finding::default()
+    };
+    let mut page = Page::new("proofs");
+    page.findings = vec![listed("one", "gouge")];
+    page.proofs = vec![listed("two", "refuted"), listed("three", "open")];
+    let html = page.html();
+    let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("no {text}"));
+    assert!(at("<h2>Findings <span class=\"count\">1<") < at("<h2>Proofs <span class=\"count\">2<"));
+    for (number, (title, kind)) in [("one", "gouge"), ("two", "refuted"), ("three", "open")]
+        .into_iter()
+        .enumerate()
+    {
+        let item = &html[at(&format!("<li class=\"finding k-{kind}\">"))..];
+        assert!(item.find(title) < item.find("</li>"), "{title}");
+        assert!(item.contains(&format!("data-finding=\"{number}\"")), "{title}");
+    }
+    page.findings.clear();
+    assert!(!page.html().contains("<h2>Findings"));
 }
