@@ -11,6 +11,8 @@ use smallvec::SmallVec;
 use std::collections::HashMap;
 
 type Vectors = SmallVec<[Vector3<f64>; 3]>;
+/// Triangles, each with a corner.
+type Sides = SmallVec<[(usize, usize); 1]>;
 /// A few points.
 pub(super) type Points = SmallVec<[Vector3<f64>; 12]>;
 
@@ -47,11 +49,13 @@ impl Patch {
         let mut all: Vec<Self> = Vec::with_capacity(3 * triangles.len());
         let mut around: Vec<Vectors> = vec![Vectors::new(); places.len()];
         let mut outwards = vec![false; places.len()];
-        // The triangle on the left of each edge, and its corner off the edge.
-        let mut sides: HashMap<(usize, usize), (usize, usize)> = HashMap::with_capacity(3 * faces.len());
+        // The triangles on the left of each edge, and their corners off the edge.
+        let mut sides: HashMap<(usize, usize), Sides> = HashMap::with_capacity(3 * faces.len());
         for (number, face) in faces.iter().enumerate() {
             for k in 0..3 {
-                sides.insert((face[k], face[(k + 1) % 3]), (number, face[(k + 2) % 3]));
+                let side = (number, face[(k + 2) % 3]);
+                sides.entry((face[k], face[(k + 1) % 3])).or_default().push(side);
+                around[face[k]].push(triangles[number].normal);
             }
         }
         for (triangle, face) in triangles.iter().zip(&faces) {
@@ -61,28 +65,28 @@ impl Patch {
             });
             for k in 0..3 {
                 let [a, b] = [face[k], face[(k + 1) % 3]];
-                around[a].push(triangle.normal);
-                // With a triangle without area between, nothing is known of the edge: it is taken as it is.
-                let other = sides.get(&(b, a));
-                if a > b && other.is_some() {
-                    continue;
-                }
-                let (normal, rises) = match other {
-                    Some((other, off)) => {
-                        let rise = triangle.normal.dot(&(places[*off] - places[a]));
-                        (triangles[*other].normal, rise < 0.0)
-                    }
-                    None => (triangle.normal, true),
-                };
-                if rises {
+                let mut add = |normal: &Vector3<f64>| {
                     outwards[a] = true;
                     outwards[b] = true;
                     if (normal - triangle.normal).norm() > SAME {
                         all.push(Self {
                             corners: [places[a], places[b]].into_iter().collect(),
-                            normals: [triangle.normal, normal].into_iter().collect(),
+                            normals: [triangle.normal, *normal].into_iter().collect(),
                         });
                     }
+                };
+                match sides.get(&(b, a)) {
+                    // Edges that two triangles share are looked at once.
+                    Some(others) if a > b && others.len() == 1 => {}
+                    Some(others) => {
+                        for (other, off) in others {
+                            if triangle.normal.dot(&(places[*off] - places[a])) < 0.0 {
+                                add(&triangles[*other].normal);
+                            }
+                        }
+                    }
+                    // Beyond a triangle without area, which was left out, is one that has a corner in common.
+                    None => around[a].iter().chain(&around[b]).for_each(add),
                 }
             }
         }
@@ -233,5 +237,44 @@ impl Patch {
             corners: self.corners.clone(),
             normals: replaced(&self.normals, end, middle),
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::Target;
+    use sweepsim_dexel::TriangleSoup;
+
+    /// Whether some patch has an edge with two normals.
+    fn has_edge(soup: &TriangleSoup, ends: [[f64; 3]; 2], normals: [[f64; 3]; 2]) -> bool {
+        let target = Target::new(soup).expect("closed");
+        let (ends, normals) = (ends.map(Vector3::from), normals.map(Vector3::from));
+        Patch::around(&target.triangles).iter().any(|patch| {
+            patch.corners.len() == 2
+                && ends.iter().all(|end| patch.corners.contains(end))
+                && normals.iter().all(|normal| patch.normals.contains(normal))
+        })
+    }
+
+    #[test]
+    fn an_edge_behind_a_triangle_without_area_is_covered() {
+        let mut block = TriangleSoup::block([0.0; 3], [4.0, 4.0, 4.0]);
+        let (a, b) = ([4.0, 0.0, 4.0], [4.0, 4.0, 4.0]);
+        let normals = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        assert!(has_edge(&block, [a, b], normals));
+        // The side has a corner in the middle of its upper edge, the top has not.
+        let middle = [4.0, 2.0, 4.0];
+        let is_side = |t: &[[f64; 3]; 3]| t.iter().all(|p| p[0] == 4.0) && t.contains(&a) && t.contains(&b);
+        let number = block.triangles.iter().position(is_side).expect("a side");
+        let side = block.triangles.swap_remove(number);
+        for end in [a, b] {
+            block.triangles.push(side.map(|p| if p == end { middle } else { p }));
+        }
+        let k = (0..3).find(|k| ![a, b].contains(&side[*k])).expect("a corner below");
+        block.triangles.push([side[(k + 1) % 3], side[(k + 2) % 3], middle]);
+        assert!(has_edge(&block, [a, b], normals));
+        // No patch is of an edge that turns inwards, or of none.
+        assert!(!has_edge(&block, [a, [0.0, 4.0, 4.0]], normals));
     }
 }
