@@ -287,7 +287,7 @@ fn the_bracket_is_proven_and_the_faulty_one_refuted() {
         };
         assert_eq!((statement.state, statement.open_count), (state, 0));
         assert_eq!(excess.about, "excess");
-        assert_eq!(excess.state, StatementState::Proven, "{excess:?}");
+        assert_eq!(excess.state, state, "{excess:?}");
         // Its holder goes into the step, and into the clamp.
         for (body, about) in [(holder, "holder"), (fixture, "fixture")] {
             assert_eq!((body.about.as_str(), body.state), (about, state), "{body:?}");
