@@ -35,6 +35,8 @@ const SHARE: f64 = 1.0 / 64.0;
 const PARTS: f64 = 512.0;
 /// At first, so many parts of every patch are looked at.
 const LOOKS: [usize; 2] = [4, 64];
+/// One of so many patches is looked at before the others.
+const SAMPLED: usize = 64;
 /// As many looks in all: in later ones, what is left of the patches is for what is left of the surface.
 const MOST_LOOKS: usize = 6;
 /// Patches smaller than this part of the distance are not divided.
@@ -201,7 +203,7 @@ impl Scene<'_> {
     fn at_distance(
         &self,
         distance: f64,
-        (known, width): (f64, f64),
+        (mut known, width): (f64, f64),
         patches: usize,
         monitor: &dyn Monitor,
     ) -> Option<Found> {
@@ -217,30 +219,16 @@ impl Scene<'_> {
             if open.is_empty() || each < LOOKS[look.min(LOOKS.len() - 1)] {
                 break;
             }
-            let (done, total) = (AtomicUsize::new(0), open.len());
-            let look = |number: &usize| {
-                if monitor.cancelled() {
-                    return None;
+            // What is found at some patches need not be found again at the others.
+            let (some, others): (Vec<usize>, Vec<usize>) = open.iter().partition(|number| **number % SAMPLED == 0);
+            for numbers in [some, others] {
+                let again = self.look_at(&numbers, (distance, known, FINER * width), each, monitor)?;
+                for (number, mut again) in numbers.into_iter().zip(again) {
+                    left = left.saturating_sub(again.patches);
+                    known = known.max(again.height());
+                    again.patches += found[number].patches;
+                    found[number] = again;
                 }
-                let mut search = Search {
-                    scene: self,
-                    distance,
-                    known,
-                    finer: FINER * width,
-                    found: Found::default(),
-                };
-                search.look(self.patches[*number].clone(), each);
-                let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-                if done.is_multiple_of(64) || done == total {
-                    monitor.advance(done, total);
-                }
-                Some(search.found)
-            };
-            let again: Vec<Found> = open.par_iter().map(look).collect::<Option<_>>()?;
-            left = left.saturating_sub(again.iter().map(|found| found.patches).sum());
-            for (number, mut again) in open.iter().zip(again) {
-                again.patches += found[*number].patches;
-                found[*number] = again;
             }
             open.retain(|number| found[*number].open_count > 0);
             // Around what is left there is always something open.
@@ -249,6 +237,36 @@ impl Scene<'_> {
             }
         }
         Some(found.into_iter().fold(Found::default(), Found::join))
+    }
+
+    /// Looks at some patches, `each` of them in so many parts.
+    fn look_at(
+        &self,
+        numbers: &[usize],
+        (distance, known, finer): (f64, f64, f64),
+        each: usize,
+        monitor: &dyn Monitor,
+    ) -> Option<Vec<Found>> {
+        let (done, total) = (AtomicUsize::new(0), numbers.len());
+        let look = |number: &usize| {
+            if monitor.cancelled() {
+                return None;
+            }
+            let mut search = Search {
+                scene: self,
+                distance,
+                known,
+                finer,
+                found: Found::default(),
+            };
+            search.look(self.patches[*number].clone(), each);
+            let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+            if done.is_multiple_of(64) || done == total {
+                monitor.advance(done, total);
+            }
+            Some(search.found)
+        };
+        numbers.par_iter().map(look).collect()
     }
 
     fn is_left(&self, point: &Vector3<f64>) -> bool {
