@@ -19,8 +19,8 @@ pub(super) struct Wanted {
     pub width: f64,
     /// Added to every bound: rounding, and how far the segments are from the moves.
     pub allowance: f64,
-    /// Of that, rounding alone.
-    pub rounding: f64,
+    /// What is missed by no more is not said to be missed: a checker's bounds are a little wider.
+    pub slack: f64,
     /// So many pairs of a cell and a time may be looked at.
     pub pairs: usize,
     /// Some point is known to be so deep.
@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
                 depth.value = depth.value.min(self.deepest_by_middle(cell, node));
             }
             if depth.value > self.enough() {
-                if let Some(normal) = above.separating(2.0 * self.wanted.rounding) {
+                if let Some(normal) = above.separating(self.wanted.slack) {
                     let normals = [Some(normal), None, None];
                     self.trace.bound(node, Reason::Separated, normals, f64::NEG_INFINITY);
                     return;

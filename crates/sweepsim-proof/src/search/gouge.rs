@@ -276,7 +276,7 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
         width: asked.width,
         // A checker adds the deviation too, and rounding of its own.
         allowance: 2.0 * limits.deviation() + ROUNDING * (size + reach),
-        rounding: ROUNDING * (size + reach),
+        slack: limits.deviation() + ROUNDING * (size + reach),
         pairs: asked.pairs,
         known: asked.known,
         recorded: asked.recorded,
@@ -288,7 +288,7 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
         if solid.is_loose() {
             wanted.pairs = wanted.pairs.min(FIRST_LOOK);
         }
-        let run = Run::new(solid, &stretches, wanted.rounding);
+        let run = Run::new(solid, &stretches, wanted.slack);
         let found = Search::new(target, &run, wanted).run();
         all.beside(found);
     }
