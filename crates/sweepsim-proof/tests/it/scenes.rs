@@ -211,8 +211,9 @@ impl SceneOf {
     }
 }
 
-/// Checks one scene against samples: whether the cutter cuts at all, and whether the enclosure is wider than wanted.
-fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], TestCaseError> {
+/// Checks one scene against samples: whether the cutter cuts at all, whether the enclosure is wider than wanted,
+/// and whether its certificate is refused.
+fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], TestCaseError> {
     let Some(path) = scene.path() else {
         return Err(TestCaseError::reject("no such arc"));
     };
@@ -255,8 +256,10 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
         prop_assert!(own.xy().norm() <= radius + 1e-5, "{own} is not in the tool");
     }
     let checked = certified.checked();
-    prop_assert!(checked.is_proven(), "{:?}", checked);
-    prop_assert!(sampled <= checked.bound.max(1e-9) && checked.bound <= found.bound + 1e-6);
+    // A checker may refuse what holds, but not often: see the limits in the docs.
+    let refused = !checked.is_proven();
+    prop_assert!(sampled <= checked.bound.max(1e-9));
+    prop_assert!(refused || checked.bound <= found.bound + 1e-6);
     if sampled > 1e-6 {
         // Less than what there is is not proven.
         let mut claim = certified.claim.clone();
@@ -268,26 +271,27 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.
     let decided = known > limits.depth || found.bound <= limits.depth;
     prop_assert!(!wide || decided || !found.open.is_empty());
-    Ok([sampled > 0.02, wide])
+    Ok([sampled > 0.02, wide, refused])
 }
 
 fn run(cases: u32, density: (usize, usize)) {
-    let counts = Cell::new([0; 2]);
+    let counts = Cell::new([0; 3]);
     let mut runner = TestRunner::new(Config {
         failure_persistence: None,
         ..Config::with_cases(cases)
     });
     let done = runner.run(&scene(), |scene| {
-        let (found, [cutting, wide]) = (check(&scene, density)?, counts.get());
-        counts.set([cutting + u32::from(found[0]), wide + u32::from(found[1])]);
+        let (found, before) = (check(&scene, density)?, counts.get());
+        counts.set([0, 1, 2].map(|k| before[k] + u32::from(found[k])));
         Ok(())
     });
     done.expect("all scenes hold");
-    let [cutting, wide] = counts.get();
-    println!("{cutting} of {cases} cut, {wide} are wide");
+    let [cutting, wide, refused] = counts.get();
+    println!("{cutting} of {cases} cut, {wide} are wide, {refused} refused");
     // Neither all cut nor none, and few enclosures, about a tenth, are wider than wanted.
     assert!(cutting > cases / 4 && cutting < cases, "{cutting} of {cases}");
     assert!(wide < cases / 3, "{wide} of {cases}");
+    assert!(refused <= cases.div_ceil(200), "{refused} of {cases}");
 }
 
 #[test]
