@@ -21,6 +21,9 @@ use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, sub};
 
+/// Depths that differ by no more, in parts of half a cell, are about the same.
+const ABOUT: f64 = 1e-6;
+
 /// When.
 pub(crate) enum During<'a> {
     /// Some stretches.
@@ -110,11 +113,14 @@ impl Near<'_> {
             .iter()
             .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
             .collect();
-        // Each piece is below that plane which has to be raised least for it.
+        // Each piece is below the first of those planes that have to be raised about least for it. Any choice is right;
+        // this one does not depend on rounding.
         let mut tops = vec![f64::NEG_INFINITY; normals.len()];
         for own in self.cell.tops_up(normals)? {
-            let least = (0..normals.len()).min_by(|i, j| (own[*i] + reach[*i]).total_cmp(&(own[*j] + reach[*j])))?;
-            tops[least] = tops[least].max(own[least]);
+            let depths = own.iter().zip(&reach).map(|(top, reach)| top + reach);
+            let about = depths.clone().fold(f64::INFINITY, f64::min) + ABOUT * self.cell.half;
+            let first = { depths }.position(|depth| depth <= about)?;
+            tops[first] = tops[first].max(own[first]);
         }
         let half = self.cell.half;
         let used: Vec<usize> = (0..normals.len()).filter(|i| tops[*i] > f64::NEG_INFINITY).collect();

@@ -154,17 +154,41 @@ pub fn between(report: &Report) -> String {
     }
 }
 
+/// Text that begins with a capital letter.
+#[must_use]
+pub fn capital(text: &str) -> String {
+    let mut rest = text.chars();
+    let first = rest.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(rest).collect()
+}
+
+/// What a statement is about.
+#[must_use]
+pub fn about(statement: &Statement) -> &str {
+    match statement.about.as_str() {
+        "gouge" => "gouges",
+        "fixture" => "fixtures",
+        "holder" => "shanks and holders beside the target",
+        about => about,
+    }
+}
+
+/// The word for the place where a statement's extreme is: `deepest`.
+#[must_use]
+pub fn extreme(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Distance => "nearest",
+        Measure::Height => "highest",
+        _ => "deepest",
+    }
+}
+
 /// What statements are about: `gouges, excess and fixtures`.
 #[must_use]
 pub fn abouts(statements: &[Statement]) -> String {
     let mut names: Vec<&str> = Vec::new();
     for statement in statements {
-        let name = match statement.about.as_str() {
-            "gouge" => "gouges",
-            "fixture" => "fixtures",
-            "holder" => "shanks and holders beside the target",
-            about => about,
-        };
+        let name = about(statement);
         if !names.contains(&name) {
             names.push(name);
         }
@@ -231,12 +255,7 @@ pub fn proven(statement: &Statement) -> String {
     };
     if let Some(witness) = &statement.witness {
         let [x, y, z] = witness.place.map(|c| format!("{c:.3}"));
-        let extreme = match statement.measure {
-            Measure::Distance => "nearest",
-            Measure::Height => "highest",
-            _ => "deepest",
-        };
-        text += &format!("; {extreme} known at ({x}, {y}, {z})");
+        text += &format!("; {} known at ({x}, {y}, {z})", extreme(statement.measure));
         text += &match (&witness.file, witness.line, witness.path, witness.r#move) {
             (Some(file), Some(line), ..) => format!(" by {file}:{line}"),
             (.., Some(path), Some(number)) => format!(" by path {path}, move {number}"),

@@ -1,7 +1,8 @@
 //! Statements that hold everywhere, or do not, with their places.
 
 use super::program::Programs;
-use sweepsim_formats::{Measure, OpenPlace, Report, Statement, StatementState};
+use crate::base::words::{about, capital, extreme};
+use sweepsim_formats::{OpenPlace, Report, Statement, StatementState};
 use sweepsim_report::{Finding, measure};
 
 /// As many open places of a statement are shown.
@@ -14,36 +15,26 @@ type Clock<'a> = &'a dyn Fn(usize, usize, f64) -> Option<f64>;
 pub(super) fn proofs(report: &Report, programs: &Programs, clock: Clock) -> Vec<Finding> {
     let mut all = Vec::new();
     for statement in report.statements.iter().flatten() {
-        all.extend(extreme(statement, programs, clock));
+        all.extend(known(statement, programs, clock));
         let open = statement.open.iter().take(OPEN);
         all.extend(open.map(|place| unknown(statement, place, programs, clock)));
     }
     all
 }
 
-/// What a statement is about, in words.
-fn about(statement: &Statement) -> &'static str {
-    match statement.about.as_str() {
-        "excess" => "Excess",
-        "fixture" => "Fixtures",
-        "holder" => "Shanks and holders",
-        _ => "Gouges",
-    }
-}
-
 /// The place where the extreme of a statement is attained.
-fn extreme(statement: &Statement, programs: &Programs, clock: Clock) -> Option<Finding> {
+fn known(statement: &Statement, programs: &Programs, clock: Clock) -> Option<Finding> {
     let witness = statement.witness.as_ref()?;
-    let (state, kind) = match statement.state {
-        StatementState::Proven => ("proven", "proven"),
-        StatementState::Refuted => ("refuted", "refuted"),
-        _ => ("open", "open"),
+    let state = match statement.state {
+        StatementState::Proven => "proven",
+        StatementState::Refuted => "refuted",
+        _ => "open",
     };
-    let extreme = match statement.measure {
-        Measure::Distance => "nearest",
-        Measure::Height => "highest",
-        _ => "deepest",
-    };
+    let title = format!(
+        "{}: {state}; the {} known place",
+        about(statement),
+        extreme(statement.measure)
+    );
     let [least, most] = statement.enclosure.map(|end| match end < f64::MAX {
         true => format!("{} mm", measure(end)),
         false => "not known".to_owned(),
@@ -56,8 +47,8 @@ fn extreme(statement: &Statement, programs: &Programs, clock: Clock) -> Option<F
     facts.extend(witness.body.iter().map(|body| ("Body".to_owned(), body.clone())));
     let place = witness.file.as_deref().zip(witness.line);
     Some(Finding {
-        title: format!("{}: {state}; the {extreme} known place", about(statement)),
-        kind: kind.to_owned(),
+        title: capital(&title),
+        kind: state.to_owned(),
         place: witness.place,
         clock: witness
             .path
@@ -75,7 +66,7 @@ fn unknown(statement: &Statement, open: &OpenPlace, programs: &Programs, clock: 
     let facts = vec![("Box".to_owned(), format!("{dx} × {dy} × {dz} mm"))];
     let place = open.file.as_deref().zip(open.line);
     Finding {
-        title: format!("{}: not known here", about(statement)),
+        title: capital(&format!("{}: not known here", about(statement))),
         kind: "open".to_owned(),
         place: [0, 1, 2].map(|k| 0.5 * (open.r#box[k] + open.r#box[k + 3])),
         clock: open

@@ -1,7 +1,7 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::base::words::{between, counted, found, looked_at, proven, setup_name};
+use crate::base::words::{between, capital, counted, found, looked_at, proven, setup_name};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -61,13 +61,7 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
 
 fn title(finding: &ReportedFinding) -> String {
     let part = finding.body.as_deref().unwrap_or("cutter");
-    let mut initial = part.chars();
-    let part: String = initial
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .chain(initial)
-        .collect();
+    let part = capital(part);
     match finding.kind.as_str() {
         "fixture" if finding.near => format!("{part} too near to a fixture"),
         _ if finding.near => format!("{part} too near to the workpiece"),

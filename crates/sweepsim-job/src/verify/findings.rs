@@ -1,11 +1,10 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
 use super::certificate::Certified;
-use super::texts::ProgramTexts;
+use super::texts::{ProgramTexts, name_of};
 use super::{axes, proof, targets, work};
 use crate::base::JobError;
 use crate::session::{Session, phase};
-use sweepsim::motion::BodyKind;
 use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
 use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
 
@@ -107,11 +106,7 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     let body = finding
         .body
         .and_then(|number| bodies?.get(number))
-        .map(|body| match body.kind {
-            BodyKind::Shank => "shank",
-            BodyKind::Holder => "holder",
-            _ => "body",
-        });
+        .map(|body| name_of(body.kind));
     let mut reported = ReportedFinding::default();
     reported.kind = finding.kind.name().to_owned();
     reported.tool = Some(path.tool);

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Result, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use sweepsim::motion::BodyKind;
 
 /// So many lines have one entry in the index of a file.
 const INDEXED: usize = 1024;
@@ -35,6 +36,15 @@ impl ProgramTexts {
         let index = index.or_insert_with(|| Index::of(&self.folder.join(file)).ok());
         let found = index.as_mut()?.line(line.checked_sub(1)?).ok()??;
         Some(String::from_utf8_lossy(&found).trim().to_owned())
+    }
+}
+
+/// What a body is called.
+pub(super) fn name_of(kind: BodyKind) -> &'static str {
+    match kind {
+        BodyKind::Shank => "shank",
+        BodyKind::Holder => "holder",
+        _ => "body",
     }
 }
 

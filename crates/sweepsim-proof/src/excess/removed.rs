@@ -112,8 +112,7 @@ impl Removed<'_> {
         if stretch.is_straight() {
             // The solid sweeps a convex one.
             let own = points.iter();
-            own.map(|point| best(level, stretch, point, -self.margin) <= -self.margin)
-                .collect()
+            own.map(|point| is_inside(level, stretch, point, self.margin)).collect()
         } else {
             let at = stretch.at(best_time(level, stretch, points, candidate.time));
             let own = points.iter();
@@ -178,14 +177,26 @@ fn lowest(of: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2], steps: usize) -
     0.5 * (from + to)
 }
 
-/// The least level of a point that was found, or the first that is low enough. Along a straight stretch it is convex.
-fn best(level: &Level, stretch: &Stretch, point: &Vector3<f64>, enough: f64) -> f64 {
-    let (mut from, mut to) = (0.0, 1.0);
+/// Whether a point is so far inside at some time of a straight stretch.
+fn is_inside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
     let of = |time: f64| level_at(level, &stretch.at(time), point);
-    let mut least = quick(level, stretch, point).0;
-    for _ in 0..STEPS {
-        if least <= enough {
-            return least;
+    let first = quick(level, stretch, point).0.min(of(0.0)).min(of(1.0));
+    narrowed(of, first, STEPS, |least, _| (least <= -margin).then_some(true)).unwrap_or(false)
+}
+
+/// Narrows the times in which a convex function is least, until what is known of it will do: the least value that was
+/// found, and how long the times are in which there may be a lesser one. `least`: its value at some time.
+fn narrowed<T>(
+    of: impl Fn(f64) -> f64,
+    mut least: f64,
+    steps: usize,
+    known: impl Fn(f64, f64) -> Option<T>,
+) -> Option<T> {
+    let (mut from, mut to) = (0.0, 1.0);
+    for _ in 0..steps {
+        let answer = known(least, to - from);
+        if answer.is_some() {
+            return answer;
         }
         let third = (to - from) / 3.0;
         let (a, b) = (of(from + third), of(to - third));
@@ -196,7 +207,7 @@ fn best(level: &Level, stretch: &Stretch, point: &Vector3<f64>, enough: f64) -> 
             from += third;
         }
     }
-    least.min(of(from)).min(of(to))
+    known(least, to - from)
 }
 
 /// A time near another at which the outermost of some points is far inside.
@@ -240,7 +251,6 @@ fn stays_away(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f6
 
 /// The same along a straight stretch. There the level is convex: its least value is in the interval that is left.
 fn stays_beside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
-    let of = |time: f64| level_at(level, &stretch.at(time), point);
     // It is never nearer to the axis than this, and its height along it changes evenly: by little, on most stretches.
     let [start, end] = &stretch.ends;
     let (off, way) = (point - start.tip, end.tip - start.tip);
@@ -251,22 +261,11 @@ fn stays_beside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: 
     if level.at([nearest, off.dot(&start.axis) - 0.5 * rise]) > 0.5 * rise.abs() + margin {
         return true;
     }
-    let (mut from, mut to, mut least) = (0.0, 1.0, quick(level, stretch, point).0);
-    for _ in 0..4 * STEPS {
-        if least <= margin {
-            return false;
-        }
-        if least > margin + stretch.travel(0.0, to - from) {
-            return true;
-        }
-        let third = (to - from) / 3.0;
-        let (a, b) = (of(from + third), of(to - third));
-        least = least.min(a).min(b);
-        if a < b {
-            to -= third;
-        } else {
-            from += third;
-        }
-    }
-    false
+    let of = |time: f64| level_at(level, &stretch.at(time), point);
+    let first = quick(level, stretch, point).0;
+    let known = |least: f64, times: f64| {
+        let is_away = least > margin + stretch.travel(0.0, times);
+        (least <= margin || is_away).then_some(is_away)
+    };
+    narrowed(of, first, 4 * STEPS, known).unwrap_or(false)
 }

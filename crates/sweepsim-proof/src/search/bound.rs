@@ -34,6 +34,8 @@ fn of_one(written: Written) -> (Reason, Normals) {
 
 /// So many of the directions are tried together.
 const TOGETHER: usize = 4;
+/// Depths that differ by no more, in parts of half a cell, are about the same.
+const ABOUT: f64 = 1e-6;
 /// Steps of a descent.
 const STEPS: usize = 8;
 
@@ -117,15 +119,22 @@ impl Above<'_> {
     /// Above several planes at once.
     fn lift(&self, planes: &[(&Way, f64)], best: &mut Depth) {
         let mut tops = [f64::NEG_INFINITY; 3];
-        // Each triangle has to be below one of the planes: that which the solid is least below.
+        // Each triangle has to be below one of the planes: the first of those that the solid is about least below, so
+        // that rounding does not decide, and a checker chooses the same.
         for piece in self.cell.pieces() {
-            let below = planes.iter().enumerate().map(|(i, (way, below))| {
-                let top = piece.corners.iter().map(|corner| way.normal.dot(corner));
-                let top = top.fold(f64::NEG_INFINITY, f64::max);
-                (top + below, top, i)
-            });
-            if let Some((_, top, i)) = below.min_by(|a, b| a.0.total_cmp(&b.0)) {
-                tops[i] = tops[i].max(top);
+            let (mut own, mut least) = ([f64::INFINITY; 3], f64::INFINITY);
+            for (own, (way, below)) in own.iter_mut().zip(planes) {
+                let heights = piece.corners.iter().map(|corner| way.normal.dot(corner));
+                *own = heights.fold(f64::NEG_INFINITY, f64::max);
+                least = least.min(*own + below);
+            }
+            let about = least + ABOUT * self.cell.half;
+            let first = planes
+                .iter()
+                .zip(own)
+                .position(|((_, below), own)| own + below <= about);
+            if let Some(i) = first {
+                tops[i] = tops[i].max(own[i]);
             }
         }
         // Planes with nothing below them are not needed, and nothing is lowered.

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_motion::{OtherCourses, Path, Segment};
 use sweepsim_solve::Monitor;
 
-/// A cutter on its path.
+/// A cutter on its path, or another body of a tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Cutter<'a> {
     /// Solids that cover it.

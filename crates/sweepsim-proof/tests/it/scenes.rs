@@ -211,9 +211,8 @@ impl SceneOf {
     }
 }
 
-/// Checks one scene against samples: whether the cutter cuts at all, whether the enclosure is wider than wanted,
-/// and whether its certificate is refused.
-fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], TestCaseError> {
+/// Checks one scene against samples: whether the cutter cuts at all, and whether the enclosure is wider than wanted.
+fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], TestCaseError> {
     let Some(path) = scene.path() else {
         return Err(TestCaseError::reject("no such arc"));
     };
@@ -256,10 +255,8 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], T
         prop_assert!(own.xy().norm() <= radius + 1e-5, "{own} is not in the tool");
     }
     let checked = certified.checked();
-    // A checker may refuse what holds, but not often: see the limits in the docs.
-    let refused = !checked.is_proven();
-    prop_assert!(sampled <= checked.bound.max(1e-9));
-    prop_assert!(refused || checked.bound <= found.bound + 1e-6);
+    prop_assert!(checked.is_proven(), "{:?}", checked);
+    prop_assert!(sampled <= checked.bound.max(1e-9) && checked.bound <= found.bound + 1e-6);
     if sampled > 1e-6 {
         // Less than what there is is not proven.
         let mut claim = certified.claim.clone();
@@ -271,27 +268,47 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], T
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.
     let decided = known > limits.depth || found.bound <= limits.depth;
     prop_assert!(!wide || decided || !found.open.is_empty());
-    Ok([sampled > 0.02, wide, refused])
+    Ok([sampled > 0.02, wide])
 }
 
 fn run(cases: u32, density: (usize, usize)) {
-    let counts = Cell::new([0; 3]);
+    let counts = Cell::new([0; 2]);
     let mut runner = TestRunner::new(Config {
         failure_persistence: None,
         ..Config::with_cases(cases)
     });
     let done = runner.run(&scene(), |scene| {
-        let (found, before) = (check(&scene, density)?, counts.get());
-        counts.set([0, 1, 2].map(|k| before[k] + u32::from(found[k])));
+        let (found, [cutting, wide]) = (check(&scene, density)?, counts.get());
+        counts.set([cutting + u32::from(found[0]), wide + u32::from(found[1])]);
         Ok(())
     });
     done.expect("all scenes hold");
-    let [cutting, wide, refused] = counts.get();
-    println!("{cutting} of {cases} cut, {wide} are wide, {refused} refused");
+    let [cutting, wide] = counts.get();
+    println!("{cutting} of {cases} cut, {wide} are wide");
     // Neither all cut nor none, and few enclosures, about a tenth, are wider than wanted.
     assert!(cutting > cases / 4 && cutting < cases, "{cutting} of {cases}");
     assert!(wide < cases / 3, "{wide} of {cases}");
-    assert!(refused <= cases.div_ceil(200), "{refused} of {cases}");
+}
+
+/// Triangles are as far below one plane of a lift as below another: prover and checker must count them to the same.
+#[test]
+fn rounding_does_not_decide_below_which_plane_a_triangle_is() {
+    let scene = SceneOf {
+        target: 2,
+        size: 0.582_940_210_238_861_1,
+        tool: 0,
+        motion: 1,
+        tips: [
+            [0.0, 0.0, 0.0],
+            [-4.825_336_598_082_491, 4.908_547_414_638_527, -1.052_064_040_320_022_3],
+        ],
+        axes: [
+            [0.0, 0.0, 1.0],
+            [0.464_105_457_706_379_56, 0.626_265_789_863_317_5, 1.0],
+        ],
+    };
+    let [cuts, _] = check(&scene, (16, 4)).expect("it is certified");
+    assert!(cuts);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::{CHORDS, LISTED, Proven, along, cutters, deep, described, finding, floor, pairs, place, solids};
 use crate::base::JobError;
 use crate::session::Session;
-use crate::verify::texts::ProgramTexts;
+use crate::verify::texts::{ProgramTexts, name_of};
 use std::collections::BTreeMap;
 use sweepsim_formats::{Job, Measure, Statement, StatementState};
 use sweepsim_proof::{Closest, Convex, Cutter, Enclosed, Limits, Target, closest, cover, deepest};
@@ -151,6 +151,7 @@ fn kept_away(
     };
     let nearest = found.nearest.as_ref();
     statement.witness = nearest.map(|(path, witness)| described(job, texts, *path, witness));
+    name_body(job, &mut statement);
     let mut findings = Vec::new();
     match statement.state {
         StatementState::Refuted => {
@@ -217,6 +218,9 @@ fn kept_out(
     if statement.state == StatementState::Refuted {
         statement.reason = None;
     }
+    if about == "holder" {
+        name_body(job, &mut statement);
+    }
     for own in &mut findings {
         own.kind = kind.to_owned();
         if about == "holder" {
@@ -226,16 +230,20 @@ fn kept_out(
     Ok(Proven::of(statement, findings))
 }
 
+/// Says which body it was, in a statement about bodies alone.
+fn name_body(job: &Job, statement: &mut Statement) {
+    if let Some(witness) = &mut statement.witness {
+        witness.body = witness.path.and_then(|path| body(job, Some(job.paths[path].tool)));
+    }
+}
+
 /// The kind of the bodies of a tool, if there is only one.
 fn body(job: &Job, tool: Option<u32>) -> Option<String> {
     let own = job.bodies.get(&tool?)?;
     let kind = own.first()?.kind;
-    let name = match kind {
-        sweepsim::motion::BodyKind::Shank => "shank",
-        sweepsim::motion::BodyKind::Holder => "holder",
-        _ => "body",
-    };
-    own.iter().all(|body| body.kind == kind).then(|| name.to_owned())
+    own.iter()
+        .all(|body| body.kind == kind)
+        .then(|| name_of(kind).to_owned())
 }
 
 /// What moves in a set-up, with the numbers of the paths.
