@@ -9,6 +9,7 @@
 mod certificate;
 mod excess;
 mod motion;
+mod process;
 mod search;
 mod solid;
 mod statement;
@@ -16,6 +17,7 @@ mod tool;
 
 pub use certificate::{claim, scene};
 pub use excess::{Left, highest};
+pub use process::{Movers, Room, Touched, Work, touched};
 pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest, deepest_recorded};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};

@@ -13,4 +13,6 @@ mod search;
 mod stock;
 mod surface;
 
+pub(crate) use removed::{Course, from_axis, level_at, lowest, narrowed, quick, stays_away};
 pub use search::{Left, highest};
+pub(crate) use stock::Before;

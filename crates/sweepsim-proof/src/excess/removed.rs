@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 /// A cutter all along its path.
-pub(super) struct Course<'a> {
+pub(crate) struct Course<'a> {
     /// Each solid that covers the cutter; a part of it only if it is exact.
-    solids: Vec<(Run<'a>, Level)>,
+    pub solids: Vec<(Run<'a>, Level)>,
 }
 
 /// Of some points, which are held.
@@ -67,9 +67,11 @@ impl<'a> Course<'a> {
 
     /// Whether no cutter holds the point at any time, for certain.
     fn misses(&self, point: &Vector3<f64>, margin: f64) -> bool {
-        self.solids
-            .iter()
-            .all(|(run, level)| run.around(point, point, &mut |stretch| stays_away(level, stretch, point, margin)))
+        self.solids.iter().all(|(run, level)| {
+            run.around(point, point, &mut |stretch| {
+                stays_away(level, (stretch, 1.0), point, margin)
+            })
+        })
     }
 }
 
@@ -127,19 +129,19 @@ impl Removed<'_> {
 }
 
 /// How far a point is from the axis.
-fn from_axis(at: &Placement, point: &Vector3<f64>) -> f64 {
+pub(crate) fn from_axis(at: &Placement, point: &Vector3<f64>) -> f64 {
     let off = point - at.tip;
     (off - at.axis * off.dot(&at.axis)).norm()
 }
 
-fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f64 {
+pub(crate) fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f64 {
     let off = point - at.tip;
     let along = off.dot(&at.axis);
     level.at([(off - at.axis * along).norm(), along])
 }
 
 /// A time at which a point is far inside, without a search; and the level then.
-fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
+pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
     let of = |time: f64| (level_at(level, &stretch.at(time), point), time);
     if stretch.is_straight() {
         let [from, to] = &stretch.ends;
@@ -165,7 +167,7 @@ fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (f64, f64) {
 }
 
 /// About where a function is least that falls, and then rises.
-fn lowest(of: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2], steps: usize) -> f64 {
+pub(crate) fn lowest(of: impl Fn(f64) -> f64, [mut from, mut to]: [f64; 2], steps: usize) -> f64 {
     for _ in 0..steps {
         let third = (to - from) / 3.0;
         if of(from + third) < of(to - third) {
@@ -186,7 +188,7 @@ fn is_inside(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64
 
 /// Narrows the times in which a convex function is least, until what is known of it will do: the least value that was
 /// found, and how long the times are in which there may be a lesser one. `least`: its value at some time.
-fn narrowed<T>(
+pub(crate) fn narrowed<T>(
     of: impl Fn(f64) -> f64,
     mut least: f64,
     steps: usize,
@@ -221,13 +223,14 @@ fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f6
     lowest(of, [(near - step).max(0.0), (near + step).min(1.0)], STEPS)
 }
 
-/// Whether a point is outside of a solid all along a stretch: levels change no faster than the point moves against it.
-fn stays_away(level: &Level, stretch: &Stretch, point: &Vector3<f64>, margin: f64) -> bool {
-    if stretch.is_straight() {
+/// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point moves
+/// against it.
+pub(crate) fn stays_away(level: &Level, (stretch, latest): (&Stretch, f64), point: &Vector3<f64>, margin: f64) -> bool {
+    if stretch.is_straight() && latest == 1.0 {
         return stays_beside(level, stretch, point, margin);
     }
     let mut open: SmallVec<[[f64; 2]; 32]> = SmallVec::new();
-    open.push([0.0, 1.0]);
+    open.push([0.0, latest]);
     let mut left = MOST_PARTS;
     while let Some([from, to]) = open.pop() {
         let middle = 0.5 * (from + to);

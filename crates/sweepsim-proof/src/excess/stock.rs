@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use sweepsim_dexel::{DistanceTo, MeshError, Stock};
 
 /// A stock, prepared for what is asked of it here: without its skin, so that what ends on its surface is beside it.
-pub(super) struct Before {
+pub(crate) struct Before {
     shape: Shape,
     /// How thick the skin is: far below any tolerance.
     skin: f64,
@@ -50,9 +50,32 @@ impl Before {
         points
     }
 
+    /// Whether the hull of some points is farther from it than a distance, for certain; or, if that is negative, no
+    /// deeper in it. `normal`: a direction away from it, if they are beside it.
+    pub fn is_beside(&self, points: &[Vector3<f64>], normal: &Vector3<f64>, distance: f64) -> bool {
+        let middle = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+        self.shape.misses(points, (&middle, normal), -distance)
+    }
+
+    /// Points whose hull has what of the hull of some points is nearer to a block than a distance, or deeper in it.
+    pub fn near(&self, mut points: Points, distance: f64) -> Points {
+        if let Shape::Block([low, high]) | Shape::Within([low, high]) = &self.shape {
+            for k in 0..3 {
+                points = below(points, |point| point[k] - (high[k] + distance));
+                points = below(points, |point| low[k] - distance - point[k]);
+            }
+        }
+        points
+    }
+
+    /// Whether all that is nearer to a point than a distance is in it, for certain.
+    pub fn holds_around(&self, point: &Vector3<f64>, distance: f64) -> bool {
+        self.shape.holds(point, distance)
+    }
+
     /// Whether a point is in it, for certain.
     pub fn holds(&self, point: &Vector3<f64>) -> bool {
-        self.shape.holds(point)
+        self.shape.holds(point, 0.0)
     }
 }
 
@@ -149,9 +172,10 @@ impl Shape {
         }
     }
 
-    fn holds(&self, point: &Vector3<f64>) -> bool {
+    /// Whether all that is nearer to a point than a distance is in it.
+    fn holds(&self, point: &Vector3<f64>, distance: f64) -> bool {
         match self {
-            Self::Block([low, high]) => (0..3).all(|k| point[k] > low[k] && point[k] < high[k]),
+            Self::Block([low, high]) => (0..3).all(|k| point[k] - distance > low[k] && point[k] + distance < high[k]),
             Self::Cylinder {
                 base,
                 axis,
@@ -160,21 +184,21 @@ impl Shape {
             } => {
                 let off = point - base;
                 let along = off.dot(axis);
-                along > 0.0 && along < *height && (off - axis * along).norm() < *radius
+                along > distance && along + distance < *height && (off - axis * along).norm() + distance < *radius
             }
-            Self::Ball(centre, radius) => (point - centre).norm() < *radius,
-            Self::Mesh(distance) => {
-                let nearest = distance.nearest((*point).into());
-                nearest.is_some_and(|nearest| nearest.distance < 0.0)
+            Self::Ball(centre, radius) => (point - centre).norm() + distance < *radius,
+            Self::Mesh(surface) => {
+                let nearest = surface.nearest((*point).into());
+                nearest.is_some_and(|nearest| nearest.distance < -distance)
             }
             Self::Within(_) => false,
-            Self::Union(parts) => parts.iter().any(|part| part.holds(point)),
-            Self::Intersection(parts) => !parts.is_empty() && parts.iter().all(|part| part.holds(point)),
+            Self::Union(parts) => parts.iter().any(|part| part.holds(point, distance)),
+            Self::Intersection(parts) => !parts.is_empty() && parts.iter().all(|part| part.holds(point, distance)),
             Self::Difference(whole, parts) => {
-                whole.holds(point)
+                whole.holds(point, distance)
                     && parts
                         .iter()
-                        .all(|part| part.misses(&[*point], (point, &Vector3::z()), 0.0))
+                        .all(|part| part.misses(&[*point], (point, &Vector3::z()), -distance))
             }
         }
     }

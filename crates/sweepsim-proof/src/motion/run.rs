@@ -129,17 +129,29 @@ impl<'a> Run<'a> {
 
     /// Visits the stretches whose swept boxes meet a box, until one of the visits says no; whether none did.
     pub fn around(&self, low: &Vector3<f64>, high: &Vector3<f64>, visit: &mut dyn FnMut(&'a Stretch) -> bool) -> bool {
+        self.around_first(self.stretches.len(), (low, high), &mut |number| {
+            visit(&self.stretches[number])
+        })
+    }
+
+    /// The same for the first `count` stretches, by their numbers.
+    pub fn around_first(
+        &self,
+        count: usize,
+        (low, high): (&Vector3<f64>, &Vector3<f64>),
+        visit: &mut dyn FnMut(usize) -> bool,
+    ) -> bool {
         let mut open: SmallVec<[usize; 64]> = self.nodes.len().checked_sub(1).into_iter().collect();
         while let Some(number) = open.pop() {
             let node = &self.nodes[number];
             let Bounds { low: from, high: to } = &node.swept;
-            if (0..3).any(|k| high[k] < from[k] || low[k] > to[k]) {
+            if node.first >= count || (0..3).any(|k| high[k] < from[k] || low[k] > to[k]) {
                 continue;
             }
             match node.halves {
                 Some([first, second]) => open.extend([second, first]),
                 None => {
-                    if !visit(&self.stretches[node.first]) {
+                    if !visit(node.first) {
                         return false;
                     }
                 }

@@ -69,6 +69,11 @@ impl Stretch {
         self.keeps_axis() && self.tip.bend == 0.0
     }
 
+    /// The axis turns by no more than this, in radians.
+    pub fn turning(&self) -> f64 {
+        if self.keeps_axis() { 0.0 } else { self.axis.speed }
+    }
+
     pub fn at(&self, t: f64) -> Placement {
         let [from, to] = &self.ends;
         if self.is_straight() {

@@ -2,6 +2,7 @@
 
 mod apart;
 mod certificates;
+mod process;
 mod scenes;
 mod standing;
 mod walls;

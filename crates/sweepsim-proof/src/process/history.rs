@@ -1,0 +1,194 @@
+//! What cutters have removed up to a moment, as far as it is certain.
+
+use super::ring::Ring;
+use super::samples::Samples;
+use crate::excess::{Before, Course, from_axis, level_at, lowest, narrowed, quick, stays_away};
+use crate::motion::{Placement, Run, Stretch};
+use crate::tool::Level;
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+
+/// Up to when cutters have removed material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// All of the paths before this one, and of it
+    pub path: usize,
+    /// so many of the stretches on which it cuts,
+    pub cut: usize,
+    /// and the next one up to this time.
+    pub during: Option<f64>,
+}
+
+/// The stock before the first cut, and the stretches on which the cutters of all paths cut.
+pub(super) struct History<'a> {
+    pub before: Before,
+    pub courses: Vec<Course<'a>>,
+}
+
+/// Of some rings, which are held.
+pub(super) type Held = SmallVec<[bool; 16]>;
+
+/// As many stretches are tried for a part, those deepest around its middle.
+const TRIED: usize = 4;
+/// How much a place nearer to the axis counts, beside one that is deeper.
+const AXIS: f64 = 0.05;
+/// Steps of a search for the best time.
+const STEPS: usize = 32;
+/// How long about a good time the best one is looked for.
+const AROUND: f64 = 0.25;
+
+/// A stretch that was followed up to a time, and how far outside of its solid a point is.
+struct Candidate<'a> {
+    order: f64,
+    solid: &'a (Run<'a>, Level),
+    stretch: &'a Stretch,
+    latest: f64,
+    time: f64,
+}
+
+impl History<'_> {
+    /// Which rings of a part were removed, as deep as `need` below the surface of one and the same convex solid: if all
+    /// of them, so was the part. And about how far from all that was removed its middle is, negative inside.
+    pub fn held(&self, samples: &Samples, moment: Moment, need: f64) -> (Held, f64) {
+        let (low, high) = samples.bounds();
+        let middle = samples.middle();
+        let (mut all, mut nearest): (Vec<Candidate>, f64) = (Vec::new(), f64::INFINITY);
+        for (number, course) in self.courses.iter().enumerate().take(moment.path + 1) {
+            for solid in course.solids.iter().filter(|(run, _)| run.solid.is_exact()) {
+                let (run, level) = solid;
+                let count = if number < moment.path {
+                    run.stretches.len()
+                } else {
+                    moment.cut + usize::from(moment.during.is_some())
+                };
+                run.around_first(count, (&low, &high), &mut |stretch| {
+                    let is_own = number == moment.path && stretch == moment.cut;
+                    let latest = if is_own { moment.during.unwrap_or(1.0) } else { 1.0 };
+                    let stretch = &run.stretches[stretch];
+                    let (mut value, mut time) = quick(level, stretch, &middle);
+                    if time > latest {
+                        (value, time) = (level_at(level, &stretch.at(latest), &middle), latest);
+                    }
+                    nearest = nearest.min(value);
+                    // No solid holds all of a part without its middle.
+                    if value > -need {
+                        return true;
+                    }
+                    let order = value + AXIS * from_axis(&stretch.at(time), &middle);
+                    all.push(Candidate {
+                        order,
+                        solid,
+                        stretch,
+                        latest,
+                        time,
+                    });
+                    true
+                });
+            }
+        }
+        let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order);
+        if all.len() > TRIED {
+            all.select_nth_unstable_by(TRIED, in_order);
+            all.truncate(TRIED);
+        }
+        all.sort_by(in_order);
+        let mut best = Held::from_elem(false, samples.rings.len());
+        let count = |held: &Held| held.iter().filter(|held| **held).count();
+        for candidate in &all {
+            let own = held_by(samples, candidate, need);
+            if count(&own) > count(&best) {
+                best = own;
+            }
+            if !best.contains(&false) {
+                break;
+            }
+        }
+        (best, nearest)
+    }
+
+    /// Whether no cutter came so near to a point before.
+    fn misses(&self, point: &Vector3<f64>, moment: Moment, distance: f64) -> bool {
+        let off = Vector3::repeat(distance);
+        let (low, high) = (point - off, point + off);
+        let until = self.courses.iter().enumerate().take(moment.path + 1);
+        { until }.all(|(number, course)| {
+            course.solids.iter().all(|(run, level)| {
+                let count = if number < moment.path {
+                    run.stretches.len()
+                } else {
+                    moment.cut + usize::from(moment.during.is_some())
+                };
+                let mut away = |number_of: usize| {
+                    let is_own = number == moment.path && number_of == moment.cut;
+                    let latest = if is_own { moment.during.unwrap_or(1.0) } else { 1.0 };
+                    stays_away(level, (&run.stretches[number_of], latest), point, distance)
+                };
+                run.around_first(count, (&low, &high), &mut away)
+            })
+        })
+    }
+
+    /// Whether all that is so near to a point is material, for certain.
+    pub fn is_material(&self, point: &Vector3<f64>, moment: Moment, distance: f64) -> bool {
+        self.before.holds_around(point, distance) && self.misses(point, moment, distance)
+    }
+}
+
+/// Which rings a solid holds, at some time of its stretch.
+fn held_by(samples: &Samples, candidate: &Candidate, need: f64) -> Held {
+    let (_, level) = candidate.solid;
+    let (stretch, latest) = (candidate.stretch, candidate.latest);
+    if stretch.is_straight() {
+        // The solid sweeps a convex one: each ring at a time of its own.
+        let is_held = |ring: &Ring| {
+            let of = |time: f64| ring.level(level, &stretch.at(latest * time));
+            let near = if latest > 0.0 { candidate.time / latest } else { 0.0 };
+            let first = of(near).min(of(0.0)).min(of(1.0));
+            narrowed(of, first, STEPS, |least, _| (least <= -need).then_some(true)).unwrap_or(false)
+        };
+        return samples.rings.iter().map(is_held).collect();
+    }
+    // The best time is that of the outermost ring; if some are not held anyway, that of most.
+    let all = moved(samples, candidate, need, |rings, at| {
+        rings
+            .iter()
+            .map(|ring| ring.level(level, at))
+            .fold(f64::NEG_INFINITY, f64::max)
+    });
+    if !all.contains(&false) {
+        return all;
+    }
+    moved(samples, candidate, need, |rings, at| {
+        rings.iter().map(|ring| ring.level(level, at)).sum()
+    })
+}
+
+/// Which rings a solid holds that turns, or whose path bends; `order`: the least at the best time.
+fn moved(samples: &Samples, candidate: &Candidate, need: f64, order: impl Fn(&[Ring], &Placement) -> f64) -> Held {
+    let (_, level) = candidate.solid;
+    let (stretch, latest) = (candidate.stretch, candidate.latest);
+    let best = |rings: &[Ring]| {
+        let of = |time: f64| order(rings, &stretch.at(time));
+        let bracket = [candidate.time - AROUND, candidate.time + AROUND].map(|time| time.clamp(0.0, latest));
+        let near = lowest(of, bracket, STEPS);
+        // At the ends themselves, a search only comes near.
+        let all = [candidate.time, 0.0, latest, near];
+        all.into_iter().min_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or(near)
+    };
+    let at = |rings: &[Ring], time: f64, need: f64| -> Held {
+        let at = stretch.at(time);
+        rings.iter().map(|ring| ring.level(level, &at) <= -need).collect()
+    };
+    match samples.ends() {
+        Some([first, last]) if stretch.keeps_axis() => {
+            // The solid is moved without turning: where it is between two times holds what is between both ends of the
+            // part, but for the bend of its path.
+            let times = [first, last].map(best);
+            let need = need + stretch.bend(0.0, (times[1] - times[0]).abs());
+            let mut held = at(first, times[0], need);
+            held.extend(at(last, times[1], need));
+            held
+        }
+        _ => at(&samples.rings, best(&samples.rings), need),
+    }
+}

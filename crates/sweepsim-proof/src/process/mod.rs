@@ -1,0 +1,17 @@
+//! What touches the stock while it is cut: shanks and holders at all times, cutters in rapids.
+//!
+//! A point of space is free at a time if it was outside of the stock from the start, or has been in a cutter before. A
+//! solid touches nothing if its surface is free all the time, and all of it is at the first time: what gets into it
+//! later must come through its surface. So the surface is divided, and the time: a [part](part) is done if all of it is
+//! beside the stock, or in one convex solid that was removed [before](history).
+//!
+//! Rapids remove nothing here, so that what they would remove is found.
+
+mod history;
+mod part;
+mod ring;
+mod samples;
+mod search;
+mod visit;
+
+pub use search::{Movers, Room, Touched, Work, touched};

@@ -1,0 +1,297 @@
+//! The search for what touches material.
+
+use super::history::History;
+use super::samples::Turned;
+use super::visit::Search;
+use crate::excess::{Before, Course};
+use crate::motion::{Run, Stretch};
+use crate::search::Cutter;
+use crate::statement::{OpenBox, Witness};
+use crate::tool::Convex;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use sweepsim_dexel::{MeshError, Stock};
+use sweepsim_solve::Monitor;
+
+/// A path of a program, with all that moves along it.
+pub struct Work<'a> {
+    /// What cuts.
+    pub cutter: Cutter<'a>,
+    /// Shanks and holders.
+    pub bodies: &'a [Convex],
+    /// Whether a move is a rapid.
+    pub is_rapid: &'a (dyn Fn(usize) -> bool + Sync),
+}
+
+/// What must touch no material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Movers {
+    /// Shanks and holders, in all moves.
+    Bodies,
+    /// Cutters, in rapids.
+    Rapids,
+}
+
+/// How much room is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Room {
+    /// So far from all material, in millimetres; if negative, so deep in it is allowed.
+    pub distance: f64,
+    /// How far the segments of a path may be from it.
+    pub deviation: f64,
+    /// At most as many parts are looked at in the whole request.
+    pub parts: usize,
+}
+
+/// What comes too near to material.
+#[derive(Clone, Debug, Default)]
+pub struct Touched {
+    /// The moves that were seen to, each with a place, and how deep it is in material; or, with room wanted, how near to
+    /// it. With the path.
+    pub moves: Vec<(usize, Witness)>,
+    /// Where it is not known, with the path: some of these places.
+    pub open: Vec<(usize, OpenBox)>,
+    /// How many they are.
+    pub open_count: usize,
+    /// Parts that were looked at.
+    pub parts: usize,
+}
+
+/// So many moves are looked at together.
+const TOGETHER: usize = 64;
+/// At first, everything is looked at in so few parts.
+const FIRST_LOOK: usize = 512;
+/// Coordinates of this size are exact to 1.
+const ROUNDING: f64 = 1e-12;
+
+/// Looks for bodies that come too near to the stock as it is at that time, and for rapids through it. `None` if the
+/// monitor cancelled the work.
+///
+/// # Errors
+/// The stock has too many vertices.
+pub fn touched(
+    stock: &Stock,
+    work: &[Work],
+    movers: Movers,
+    room: &Room,
+    monitor: &dyn Monitor,
+) -> Result<Option<Touched>, MeshError> {
+    let Some([low, high]) = stock.bounds() else {
+        return Ok(Some(Touched::default()));
+    };
+    let (low, high) = (Vector3::from(low), Vector3::from(high));
+    let solids: Vec<Vec<Convex>> = work.iter().map(Work::solids).collect();
+    let (mut size, mut cut) = (low.amax().max(high.amax()), Vec::with_capacity(work.len()));
+    for (own, solids) in work.iter().zip(&solids) {
+        let done = Cut::new(own, solids, room.deviation);
+        let reach = solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        let far = |stretch: &Stretch| stretch.low.amax().max(stretch.high.amax());
+        size = done.stretches.iter().map(far).fold(size, f64::max) + reach;
+        cut.push(done);
+    }
+    let rounding = ROUNDING * size;
+    let courses = work.iter().zip(&cut);
+    let history = History {
+        before: Before::new(stock, 0.0)?,
+        courses: courses
+            .map(|(own, cut)| Course::new(own.cutter.solids, &cut.stretches, rounding))
+            .collect(),
+    };
+    let scene = Scene {
+        work,
+        solids: &solids,
+        movers,
+        room,
+        history,
+        first: cut.iter().map(|cut| &cut.first[..]).collect(),
+        margin: room.distance + 2.0 * room.deviation + rounding,
+        bounds: [low, high],
+    };
+    Ok(scene.search(monitor))
+}
+
+impl Work<'_> {
+    /// What cuts and what does not.
+    fn solids(&self) -> Vec<Convex> {
+        self.cutter.solids.iter().chain(self.bodies).cloned().collect()
+    }
+}
+
+/// The stretches on which a cutter cuts.
+struct Cut {
+    stretches: Vec<Stretch>,
+    /// For each move, how many there are before it.
+    first: Vec<u32>,
+}
+
+impl Cut {
+    fn new(work: &Work, solids: &[Convex], deviation: f64) -> Self {
+        let moves = work.cutter.path.moves();
+        let (mut stretches, mut first) = (Vec::new(), Vec::with_capacity(moves));
+        let cutter = alone(&work.cutter, solids);
+        for from in (0..moves).step_by(TOGETHER) {
+            let mut own = cutter
+                .stretches(from..moves.min(from + TOGETHER), deviation)
+                .into_iter()
+                .peekable();
+            for number in from..moves.min(from + TOGETHER) {
+                first.push(u32::try_from(stretches.len()).unwrap_or(u32::MAX));
+                while let Some(stretch) = own.next_if(|stretch| stretch.number == number) {
+                    if !(work.is_rapid)(number) {
+                        stretches.push(stretch);
+                    }
+                }
+            }
+        }
+        Self { stretches, first }
+    }
+}
+
+/// Some solids along the path of a cutter, without its other courses.
+fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
+    Cutter {
+        solids,
+        path: cutter.path,
+        others: None,
+    }
+}
+
+pub(super) struct Scene<'a> {
+    pub work: &'a [Work<'a>],
+    pub solids: &'a [Vec<Convex>],
+    pub movers: Movers,
+    pub room: &'a Room,
+    pub history: History<'a>,
+    pub first: Vec<&'a [u32]>,
+    pub margin: f64,
+    /// Of the stock.
+    pub bounds: [Vector3<f64>; 2],
+}
+
+#[derive(Default)]
+pub(super) struct Found {
+    pub moves: BTreeMap<usize, Witness>,
+    pub open: Vec<OpenBox>,
+    /// How many places of each move are open.
+    pub open_counts: BTreeMap<usize, usize>,
+    pub parts: usize,
+}
+
+impl Scene<'_> {
+    fn search(&self, monitor: &dyn Monitor) -> Option<Touched> {
+        let all: Vec<(usize, Range<usize>)> = self.work.iter().enumerate().flat_map(|own| self.ranges(own)).collect();
+        let mut found: Vec<Found> = all.iter().map(|_| Found::default()).collect();
+        let mut open: Vec<usize> = (0..all.len()).collect();
+        for look in 0..2 {
+            let most = match look {
+                0 => FIRST_LOOK,
+                _ => (self.room.parts / open.len().max(1)).max(FIRST_LOOK),
+            };
+            let (done, total) = (AtomicUsize::new(0), open.len());
+            let of = |number: &usize| {
+                if monitor.cancelled() {
+                    return None;
+                }
+                let (path, moves) = &all[*number];
+                let found = self.look(*path, moves.clone(), most);
+                monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
+                Some(found)
+            };
+            let again: Option<Vec<Found>> = open.par_iter().with_max_len(1).map(of).collect();
+            for (number, mut again) in open.iter().zip(again?) {
+                again.parts += found[*number].parts;
+                found[*number] = again;
+            }
+            open.retain(|number| !found[*number].open_counts.is_empty());
+        }
+        let mut touched = Touched::default();
+        for ((path, _), found) in all.into_iter().zip(found) {
+            let mut found = found;
+            // A move that touches is known to.
+            let moves = &found.moves;
+            found.open.retain(|open| !moves.contains_key(&open.first.0));
+            found.open_counts.retain(|number, _| !moves.contains_key(number));
+            touched
+                .moves
+                .extend(found.moves.into_values().map(|witness| (path, witness)));
+            touched.open.extend(found.open.into_iter().map(|open| (path, open)));
+            touched.open_count += found.open_counts.values().sum::<usize>();
+            touched.parts += found.parts;
+        }
+        Some(touched)
+    }
+
+    /// Parts of the work on a path.
+    fn ranges(&self, (path, work): (usize, &Work)) -> Vec<(usize, Range<usize>)> {
+        let moves = work.cutter.path.moves();
+        let ranges = (0..moves)
+            .step_by(TOGETHER)
+            .map(|from| from..moves.min(from + TOGETHER));
+        let some = ranges.filter(|range| self.movers == Movers::Bodies || range.clone().any(work.is_rapid));
+        some.map(|range| (path, range)).collect()
+    }
+
+    fn look(&self, path: usize, moves: Range<usize>, most: usize) -> Found {
+        let work = &self.work[path];
+        let own = alone(&work.cutter, &self.solids[path]);
+        let own_count = own.stretches(moves.clone(), self.room.deviation).len();
+        let all = Cutter {
+            others: work.cutter.others,
+            ..own
+        };
+        let stretches = all.stretches(moves, self.room.deviation);
+        let movers = match self.movers {
+            Movers::Bodies => work.bodies,
+            Movers::Rapids => work.cutter.solids,
+        };
+        let mut found = Found::default();
+        for solid in movers {
+            let run = Run::new(solid, &stretches, self.margin.abs());
+            let room = self.room.distance.max(0.0) + self.margin.abs();
+            let (low, high) = (self.bounds[0].map(|c| c - room), self.bounds[1].map(|c| c + room));
+            let mut near = Vec::new();
+            run.around_first(stretches.len(), (&low, &high), &mut |number| {
+                near.push(number);
+                true
+            });
+            near.sort_unstable();
+            let count = near.len();
+            for (k, number) in near.into_iter().enumerate() {
+                // What some have not needed is for the others.
+                let most = found.parts + most.saturating_sub(found.parts) / (count - k);
+                let stretch = &stretches[number];
+                let is_rapid = (work.is_rapid)(stretch.number);
+                if self.movers == Movers::Rapids && !is_rapid {
+                    continue;
+                }
+                // The first of its move, on the path itself.
+                let is_own = number < own_count;
+                let is_first = number == 0 || stretches[number - 1].number != stretch.number;
+                let starts = is_own
+                    && is_first
+                    && match stretch.number {
+                        0 => true,
+                        before => self.movers == Movers::Rapids && !(work.is_rapid)(before - 1),
+                    };
+                let of_move = stretches[..number]
+                    .iter()
+                    .rev()
+                    .take_while(|own| own.number == stretch.number);
+                let cut = self.first[path][stretch.number] as usize;
+                let search = Search {
+                    scene: self,
+                    solid,
+                    turned: Turned::new(stretch),
+                    path,
+                    cut: if is_rapid { cut } else { cut + of_move.count() },
+                    is_rapid,
+                };
+                search.look(starts, most, &mut found);
+            }
+        }
+        found
+    }
+}
