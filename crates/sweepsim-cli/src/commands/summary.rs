@@ -136,12 +136,7 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         );
         line("verdict", &text);
     } else if verdict == Verdict::Pass {
-        let proven = match statements {
-            [] => String::new(),
-            all => format!(" ({}: proven everywhere)", words::abouts(all)),
-        };
-        let text = format!("PASS on the dexels' lines only{proven}: nothing was found on them that does harm");
-        line("verdict", &text);
+        line("verdict", &words::passed(report));
     } else if findings.is_empty() {
         line("verdict", "FAIL: the part deviates from its target");
     } else {

@@ -141,7 +141,8 @@ pub enum Verdict {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Scope {
-    /// Where harm was looked for: `lines`, on the lines of the dexels and nowhere between them.
+    /// Where harm was looked for: `lines`, on the lines of the dexels, and between them only what the statements are
+    /// about; or `everywhere`, if there is a statement about each kind of harm that was looked for.
     pub extent: String,
     /// The lines, by direction.
     pub lines: Vec<ScopeLines>,

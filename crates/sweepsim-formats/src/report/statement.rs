@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Statement {
     /// `gouge`: no cutter goes deeper below the target than the limit; `excess`: nothing that hangs together with the
     /// target stands higher above it; `fixture`: no cutter or body goes deeper into a fixture; `holder`: no body goes
-    /// deeper into the target. The last two with [`Measure::Distance`]: no body comes nearer than the limit.
+    /// deeper into the target; `collision`: none goes deeper into the stock as it is at that time; `rapid`: no cutter does
+    /// in a rapid, or in another move that must not cut. Of fixtures, holders and collisions with [`Measure::Distance`]: no body comes nearer than the limit.
     pub about: String,
     /// What is measured.
     #[serde(default, skip_serializing_if = "Measure::is_depth")]

@@ -145,12 +145,33 @@ pub fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
     Some(&setups.get(number?)?.name)
 }
 
+/// Whether there is a statement about each kind of harm that was looked for.
+#[must_use]
+pub fn is_everywhere(report: &Report) -> bool {
+    report.scope.as_ref().is_some_and(|scope| scope.extent == "everywhere")
+}
+
 /// What was looked at between the lines.
 #[must_use]
 pub fn between(report: &Report) -> String {
     match report.statements.as_deref() {
         None | Some([]) => "nothing between them".to_owned(),
+        Some(statements) if is_everywhere(report) => format!("between them, {}", abouts(statements)),
         Some(statements) => format!("between them, only {}", abouts(statements)),
+    }
+}
+
+/// The verdict of a program of which nothing was found that does harm, and all that was stated is proven.
+#[must_use]
+pub fn passed(report: &Report) -> String {
+    let nothing = "nothing was found on them that does harm";
+    match report.statements.as_deref() {
+        None | Some([]) => format!("PASS on the dexels' lines only: {nothing}"),
+        Some(all) if is_everywhere(report) => format!("PASS, proven everywhere: {}", abouts(all)),
+        Some(all) => {
+            let about = abouts(all);
+            format!("PASS on the dexels' lines only ({about}: proven everywhere): {nothing}")
+        }
     }
 }
 
@@ -169,6 +190,8 @@ pub fn about(statement: &Statement) -> &str {
         "gouge" => "gouges",
         "fixture" => "fixtures",
         "holder" => "shanks and holders beside the target",
+        "collision" => "shanks and holders beside the stock",
+        "rapid" => "rapids",
         about => about,
     }
 }
@@ -226,6 +249,18 @@ pub fn proven(statement: &Statement) -> String {
         ("holder", _) => (
             format!("no shank or holder goes deeper into the target than {limit}"),
             format!("a shank or holder goes deeper into the target than {limit}"),
+        ),
+        ("collision", Measure::Distance) => (
+            format!("no shank or holder comes nearer to the stock, as it is at that time, than {limit}"),
+            format!("a shank or holder comes nearer to the stock, as it is at that time, than {limit}"),
+        ),
+        ("collision", _) => (
+            format!("no shank or holder goes deeper into the stock, as it is at that time, than {limit}"),
+            format!("a shank or holder goes deeper into the stock, as it is at that time, than {limit}"),
+        ),
+        ("rapid", _) => (
+            format!("no rapid goes deeper into the stock, as it is at that time, than {limit}"),
+            format!("a rapid goes deeper into the stock, as it is at that time, than {limit}"),
         ),
         _ => (
             format!("no cutter goes deeper into the target than {limit}"),

@@ -189,6 +189,9 @@ fn facts(source: &PageSource) -> Vec<Fact> {
                 ("fixture", _) => ("Depth in fixtures", [&most, &least]),
                 ("holder", Measure::Distance) => ("Holder from target", [&least, &most]),
                 ("holder", _) => ("Holder in target", [&most, &least]),
+                ("collision", Measure::Distance) => ("Holder from stock", [&least, &most]),
+                ("collision", _) => ("Holder in stock", [&most, &least]),
+                ("rapid", _) => ("Rapids in stock", [&most, &least]),
                 _ => ("Depth of gouges", [&most, &least]),
             };
         let (value, words) = match state {

@@ -1,7 +1,7 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::base::words::{between, capital, counted, found, looked_at, proven, setup_name};
+use crate::base::words::{between, capital, counted, found, is_everywhere, looked_at, proven, setup_name};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -27,9 +27,13 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
                 .as_ref()
                 .is_some_and(|scope| scope.not_looked_at.is_empty()) =>
         {
-            Verdict::good(
-                "Nothing was found that does harm, and the part is within its limits: on the lines that were looked at.",
-            )
+            let end = match is_everywhere(report) {
+                true => "proven everywhere",
+                false => "on the lines that were looked at",
+            };
+            Verdict::good(format!(
+                "Nothing was found that does harm, and the part is within its limits: {end}."
+            ))
         }
         (0, 0) => Verdict::partial("Nothing was found that does harm, but not everything was looked at."),
         (0, left) => Verdict::bad(format!(

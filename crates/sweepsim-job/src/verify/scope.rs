@@ -8,7 +8,7 @@ use sweepsim_formats::{NotLookedAt, Scope, ScopeLines};
 /// What was looked at on these tiles, and what was not.
 pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
     let mut scope = Scope::default();
-    scope.extent = "lines".to_owned();
+    scope.extent = if is_proven(session) { "everywhere" } else { "lines" }.to_owned();
     let judged = sets.iter().filter(|set| matches!(set.purpose, Purpose::Judge { .. }));
     scope.lines = judged
         .zip(["z", "x", "y"])
@@ -20,6 +20,16 @@ pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
         .collect();
     scope.not_looked_at = not_looked_at(session);
     scope
+}
+
+/// Whether all that is looked at on the lines is looked at between them as well.
+fn is_proven(session: Session) -> bool {
+    session.request.judging.proof && !session.request.judging.first && !is_guessed(session)
+}
+
+/// Whether the stock was guessed.
+pub(super) fn is_guessed(session: Session) -> bool {
+    session.plan.guessed().iter().any(|guess| guess.about == "stock")
 }
 
 fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
@@ -54,7 +64,7 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
         let needs = needs("`fixtures` in the job", "a job with `fixtures`");
         all.push(NotLookedAt::new("fixtures", needs));
     }
-    if session.plan.guessed().iter().any(|guess| guess.about == "stock") {
+    if is_guessed(session) {
         let needs = needs("`stock` in the job", "--stock");
         all.push(NotLookedAt::new("rapids through the real stock: it was guessed", needs));
     }

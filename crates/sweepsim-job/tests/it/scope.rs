@@ -3,7 +3,7 @@
 use crate::walls::{request, slotted};
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::{Body, BodyKind, Profile, ProfileSegment, Tool};
-use sweepsim_job::{Directions, Memory, Outcome, Output, Request, Verdict};
+use sweepsim_job::{Directions, Judging, Memory, Outcome, Output, Request, Verdict};
 
 fn run(request: Request) -> Outcome {
     request.plan().unwrap().run(&()).unwrap()
@@ -62,22 +62,25 @@ fn what_nobody_asked_for_is_named() {
 }
 
 #[test]
-fn all_that_was_asked_for_is_green_on_its_lines() {
-    let outcome = run(complete(request(slotted([15.0, 25.0], -4.0))));
+fn all_that_was_asked_for_is_green() {
+    let complete = || complete(request(slotted([15.0, 25.0], -4.0)));
+    let mut judging = Judging::default();
+    judging.proof = false;
+    let on_lines = run(complete().judging(judging));
+    assert_eq!(on_lines.verdict(), Some(Verdict::Pass));
+    assert_eq!(on_lines.report().scope.as_ref().unwrap().extent, "lines");
+    assert!(page(&on_lines).contains("on the lines that were looked at"));
+    let outcome = run(complete());
     assert_eq!(outcome.verdict(), Some(Verdict::Pass));
     assert_eq!(not_at(&outcome), [""; 0]);
     let scope = outcome.report().scope.as_ref().unwrap();
-    assert_eq!(scope.extent, "lines");
+    assert_eq!(scope.extent, "everywhere");
     let along: Vec<&str> = scope.lines.iter().map(|lines| &lines.along[..]).collect();
     assert_eq!(along, ["z", "x", "y"]);
     let page = page(&outcome);
     assert!(page.contains("class=\"verdict good\""));
-    assert!(page.contains("on the lines that were looked at"));
-    assert!(
-        page.contains("1 mm apart; between them, only gouges"),
-        "{:?}",
-        scope.lines
-    );
+    assert!(page.contains("proven everywhere"));
+    assert!(page.contains("1 mm apart; between them, gouges"), "{:?}", scope.lines);
 }
 
 #[test]

@@ -91,7 +91,9 @@ fn left(outcome: &Outcome, height: f64) -> StatementState {
 /// The state of what is said of gouges everywhere: the depth is in its enclosure, no wider than this.
 fn proven(outcome: &Outcome, depth: f64, width: f64) -> StatementState {
     let statements = outcome.report().statements.as_deref().expect("statements");
-    assert_eq!(statements.len(), 2, "{statements:?}");
+    let abouts: Vec<&str> = statements.iter().map(|statement| &statement.about[..]).collect();
+    assert_eq!(abouts, ["gouge", "excess", "rapid"]);
+    assert_eq!(statements[2].state, StatementState::Proven);
     let statement = &statements[0];
     let [least, most] = statement.enclosure;
     assert!(least <= depth && depth <= most, "{depth} in {least} … {most}");

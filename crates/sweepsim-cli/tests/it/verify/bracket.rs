@@ -18,14 +18,19 @@ fn the_bracket_is_proven_and_the_faulty_one_refuted() {
         assert_eq!(output.status.code(), Some(code), "{}", text(&output.stdout));
         let report = fs::read(folder.path(&format!("{job}/report.json"))).unwrap();
         let report: Report = serde_json::from_slice(&report).unwrap();
-        let [statement, excess, holder, fixture] = report.statements.as_deref().unwrap() else {
+        let [statement, excess, holder, fixture, rapid, collision] = report.statements.as_deref().unwrap() else {
             panic!("{:?}", report.statements)
         };
         assert_eq!((statement.state, statement.open_count), (state, 0));
         assert_eq!(excess.about, "excess");
         assert_eq!(excess.state, state, "{excess:?}");
-        // Its holder goes into the step, and into the clamp.
-        for (body, about) in [(holder, "holder"), (fixture, "fixture")] {
+        // Its holder goes into the step, the clamp and the stock; and a rapid goes through that.
+        for (body, about) in [
+            (holder, "holder"),
+            (fixture, "fixture"),
+            (rapid, "rapid"),
+            (collision, "collision"),
+        ] {
             assert_eq!((body.about.as_str(), body.state), (about, state), "{body:?}");
         }
         // Chords of the round walls are cut by less than the limit.
@@ -57,9 +62,14 @@ fn clearances_are_proven_or_refuted() {
         let kept: Vec<_> = statements
             .filter(|statement| statement.measure == Measure::Distance)
             .collect();
-        let [holder, fixture] = kept[..] else {
+        let [holder, fixture, collision] = kept[..] else {
             panic!("{kept:?}")
         };
+        assert_eq!(
+            (&collision.about[..], collision.limit),
+            ("collision", clearance.parse().unwrap())
+        );
+        println!("{collision:?}");
         assert_eq!((holder.about.as_str(), fixture.about.as_str()), ("holder", "fixture"));
         for (statement, truth) in [(holder, 4.0), (fixture, 2.0)] {
             let [least, most] = statement.enclosure;

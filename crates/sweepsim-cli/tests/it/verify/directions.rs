@@ -31,9 +31,15 @@ fn findings(workdir: &Workdir, more: &[&str]) -> (Option<i32>, Vec<ReportedFindi
 fn what_stands_between_dexels_is_found_along_the_others() {
     let workdir = Workdir::new(JOB);
     // The fixtures' dexels begin where they do, so the plate is seen along z; the web is not.
-    let (code, along_z) = findings(&workdir, &[]);
+    let (code, along_z) = findings(&workdir, &["--no-proof"]);
     assert_eq!((code, along_z.len()), (Some(1), 1), "{along_z:?}");
     assert_eq!(along_z[0].kind, "fixture");
+    // What is proven needs no lines.
+    let (code, between) = findings(&workdir, &[]);
+    assert_eq!((code, between.len()), (Some(1), 2), "{between:?}");
+    let web = &between[0];
+    assert!(web.between && web.kind == "rapid" && web.r#move == Some(1), "{web:?}");
+    assert!((12.9..13.1).contains(&web.place[0]) && web.depth < 0.1, "{web:?}");
     let (code, all) = findings(&workdir, &["--directions", "xyz"]);
     assert_eq!(code, Some(1));
     let told: Vec<(&str, Option<usize>, Option<&str>)> = all

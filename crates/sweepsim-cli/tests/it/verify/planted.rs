@@ -295,9 +295,13 @@ impl Program {
         assert!(report.dexels.unresolved.is_empty(), "{}", told());
         let mut found = BTreeMap::new();
         for finding in report.findings.expect("findings") {
-            // The judge looks at lines, and knows nothing of what is between them: that it is in the target is certain.
+            // The judge looks at lines, and knows nothing of what is between them: that it is in the target, or in the
+            // stock, is certain.
             if finding.between {
-                let ([min, max], limit) = self.target;
+                let ([min, max], limit) = match finding.kind.as_str() {
+                    "gouge" => self.target,
+                    _ => (self.stock, 0.0),
+                };
                 let depths = (0..3).flat_map(|k| [finding.place[k] - min[k], max[k] - finding.place[k]]);
                 let depth = depths.fold(f64::INFINITY, f64::min);
                 assert!(depth > limit && depth >= finding.depth, "{}", told());

@@ -14,7 +14,7 @@ const CONTACT: f64 = 1e-3;
 const WIDTH: f64 = 0.1;
 
 /// The bodies of all tools, as solids.
-fn bodies(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
+pub(super) fn bodies(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
     let of_tool = |(number, own): (&u32, &Vec<sweepsim::motion::Body>)| {
         let solids = own.iter().flat_map(|body| cover(&body.solid, tolerance));
         (*number, solids.collect())
@@ -22,7 +22,7 @@ fn bodies(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
     job.bodies.iter().map(of_tool).collect()
 }
 
-fn clearance(session: Session) -> f64 {
+pub(super) fn clearance(session: Session) -> f64 {
     session.request.judging.clearance.unwrap_or(session.job.clearance)
 }
 
@@ -89,12 +89,12 @@ pub(super) fn beside_fixtures(session: Session, texts: &mut ProgramTexts) -> Res
     Ok(proven)
 }
 
-fn contact(job: &Job) -> f64 {
+pub(super) fn contact(job: &Job) -> f64 {
     floor(job).max(CONTACT)
 }
 
 /// Concave outlines are replaced by chords within this.
-fn tolerance(session: Session) -> f64 {
+pub(super) fn tolerance(session: Session) -> f64 {
     CHORDS * clearance(session).max(contact(session.job))
 }
 
@@ -238,7 +238,7 @@ fn name_body(job: &Job, statement: &mut Statement) {
 }
 
 /// The kind of the bodies of a tool, if there is only one.
-fn body(job: &Job, tool: Option<u32>) -> Option<String> {
+pub(super) fn body(job: &Job, tool: Option<u32>) -> Option<String> {
     let own = job.bodies.get(&tool?)?;
     let kind = own.first()?.kind;
     own.iter()

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod excess;
+mod process;
 mod solids;
 
 use super::asked::{Asked, CHORDS, WIDTH, along, cutters, floor, limits, pairs};
@@ -49,6 +50,7 @@ pub(super) fn statements(
         all.extend(bodies::beside_target(session, texts, &solid)?);
     }
     all.extend(bodies::beside_fixtures(session, texts)?);
+    all.extend(process::beside_stock(session, texts)?);
     let (mut statements, mut findings, mut all_certified) = (Vec::new(), Vec::new(), Vec::new());
     for Proven {
         statement,
@@ -186,18 +188,20 @@ fn finding(job: &Job, texts: &mut ProgramTexts, kind: &str, number: usize, witne
 /// The same statement, if what was found on the lines refutes it.
 fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Statement {
     // Collisions are with the workpiece as it is at that time, which may have more than the target.
-    if statement.state != StatementState::Open || !["gouge", "fixture"].contains(&statement.about.as_str()) {
+    if statement.state != StatementState::Open || ["excess", "holder"].contains(&statement.about.as_str()) {
         return statement;
     }
+    let is_distance = statement.measure == Measure::Distance;
     let own = findings
         .iter()
-        .filter(|finding| finding.kind == statement.about && !finding.near);
+        .filter(|finding| finding.kind == statement.about && (is_distance || !finding.near));
     let Some(deepest) = own.max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
         return statement;
     };
     statement.state = StatementState::Refuted;
     // On a line, something is where it may not be: beyond the limit, by how much is not said.
     match statement.measure {
+        Measure::Distance if deepest.near => statement.enclosure = [0.0, statement.limit],
         Measure::Distance => statement.enclosure = [0.0; 2],
         _ => statement.enclosure[0] = statement.enclosure[0].max(statement.limit),
     }
