@@ -25,7 +25,8 @@ pub(crate) struct Rates {
 /// A segment of a move with what is known of it for all times.
 #[derive(Clone, Debug)]
 pub(crate) struct Stretch {
-    segment: Segment,
+    /// None of a straight one.
+    segment: Option<Box<Segment>>,
     /// The move, and the times in it at which the stretch begins and ends.
     pub number: usize,
     pub times: [f64; 2],
@@ -47,8 +48,9 @@ impl Stretch {
         let axes: Vec<_> = segment.turns().iter().map(|turn| turn.column(2).into_owned()).collect();
         let (tip, axis) = (rates(&points, &weights), rates(&axes, segment.weights()));
         let ends = [0.0, 1.0].map(|t| placement(&segment, t));
+        let is_straight = axis.speed <= STILL && tip.bend == 0.0;
         Self {
-            segment,
+            segment: (!is_straight).then(|| Box::new(segment)),
             ends,
             number,
             times,
@@ -66,7 +68,7 @@ impl Stretch {
 
     /// Whether the axis stays the same and the tip moves along a line.
     pub fn is_straight(&self) -> bool {
-        self.keeps_axis() && self.tip.bend == 0.0
+        self.segment.is_none()
     }
 
     /// The axis turns by no more than this, in radians.
@@ -76,16 +78,19 @@ impl Stretch {
 
     pub fn at(&self, t: f64) -> Placement {
         let [from, to] = &self.ends;
-        if self.is_straight() {
-            let (tip, axis) = (from.tip + (to.tip - from.tip) * t, from.axis);
-            return Placement { tip, axis };
+        match &self.segment {
+            Some(segment) => placement(segment, t),
+            None => Placement {
+                tip: from.tip + (to.tip - from.tip) * t,
+                axis: from.axis,
+            },
         }
-        placement(&self.segment, t)
     }
 
     /// The time in the move.
     pub fn time(&self, t: f64) -> f64 {
-        self.times[0] + (self.times[1] - self.times[0]) * self.segment.time(t)
+        let own = self.segment.as_ref().map_or(t, |segment| segment.time(t));
+        self.times[0] + (self.times[1] - self.times[0]) * own
     }
 
     /// How far a point within `reach` of the tip may move in a time.

@@ -84,10 +84,8 @@ impl<'a> Search<'a> {
             self.found.pairs += 1;
             self.visit(&pair);
         }
-        if self.wanted.recorded {
-            let tree = self.trace.written(self.found.bound, self.wanted.allowance);
-            self.found.trees.push(tree);
-        }
+        let tree = self.trace.written(self.found.bound, self.wanted.allowance);
+        self.found.trees.extend(tree);
         self.found
     }
 
@@ -277,7 +275,7 @@ impl<'a> Search<'a> {
                 1..=MOST_PIECES => {
                     let (own, way) = child.depth(&target.triangles);
                     let normals = [way.map(|way| way.written), None, None];
-                    self.trace.bound(node, Reason::CellLifted, normals, own);
+                    self.trace.bound(node, Reason::Lifted, normals, own);
                     depth.min(own)
                 }
                 _ => depth,

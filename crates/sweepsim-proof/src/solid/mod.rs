@@ -24,6 +24,8 @@ pub struct Target {
     pub(crate) cells_left: AtomicUsize,
     /// A bound of all coordinates.
     pub(crate) size: f64,
+    /// Whether all triangles have an area.
+    pub(crate) is_whole: bool,
 }
 
 /// At most as many cells, of some hundred bytes each; of one with pieces, every eight count as another.
@@ -58,6 +60,7 @@ impl Target {
         let (centre, half) = root(&low, &high);
         Ok(Self {
             root: Cell::new(centre, half, &all, &triangles, &distance),
+            is_whole: triangles.len() == soup.triangles.len(),
             triangles,
             distance,
             cells_left: AtomicUsize::new(MOST_CELLS),

@@ -1,0 +1,163 @@
+//! What a search leaves behind for a checker: of each patch of the surface, a tree.
+//!
+//! A node is a byte, and what belongs to it; both parts of a division, or all of them, follow.
+//!
+//! | byte | node |
+//! | --- | --- |
+//! | 0 | Nothing is there: an edge or a corner that turns inwards, or none. |
+//! | 1 | Outside of the stock. |
+//! | 2 | Nearer to a triangle: its number. |
+//! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch, as a step from that which was named before, even forth and odd back; then the time, an `f32`, if the stretch is not straight. |
+//! | 10, 11, 12 | Halved between the corners 0 and 1, 0 and 2, or 1 and 2. |
+//! | 13, 14, 15 | The same of normals. |
+//! | 16 | For any three of its normals. |
+
+use super::removed::Holder;
+use super::surface::{Halved, Patch};
+use smallvec::SmallVec;
+
+/// The trees of some patches of the surface: the first, how many, and the bytes.
+pub type PatchTrees = (usize, usize, Vec<u8>);
+
+/// So many patches have their trees together.
+const TOGETHER: usize = 4096;
+
+/// A step of a tree whose parts are searched for themselves.
+#[derive(Clone, Copy)]
+pub(super) enum Step {
+    /// A patch of the surface begins.
+    Begin,
+    Byte(u8),
+    /// The tree of a part follows.
+    Part(usize),
+}
+
+/// The tree of a part.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Record {
+    /// What of it is bytes, and what names a holder.
+    all: Vec<Entry>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Entry {
+    Byte(u8),
+    Near(u32),
+    Removed(Holder),
+}
+
+impl Record {
+    pub fn clear(&mut self) {
+        self.all.clear();
+    }
+
+    pub fn outside(&mut self) {
+        self.all.push(Entry::Byte(1));
+    }
+
+    pub fn near(&mut self, triangle: u32) {
+        self.all.push(Entry::Near(triangle));
+    }
+
+    pub fn removed(&mut self, holder: Holder) {
+        self.all.push(Entry::Removed(holder));
+    }
+
+    pub fn halved(&mut self, halved: Halved) {
+        self.all.push(Entry::Byte(byte_of(halved)));
+    }
+}
+
+fn byte_of(halved: Halved) -> u8 {
+    let (first, pair) = match halved {
+        Halved::Corners(pair) => (10, pair),
+        Halved::Normals(pair) => (13, pair),
+    };
+    first + (pair[0] + pair[1] - 1) as u8
+}
+
+/// The patches of the surface in parts, the large ones halved; and how they make up the surface.
+pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch) -> bool) -> (Vec<Patch>, Vec<Step>) {
+    let (mut parts, mut steps) = (Vec::new(), Vec::with_capacity(2 * surface.len()));
+    for own in surface {
+        steps.push(Step::Begin);
+        match own.len() {
+            0 => steps.push(Step::Byte(0)),
+            1 => {}
+            _ => steps.push(Step::Byte(16)),
+        }
+        let mut open: Vec<Patch> = own.into_iter().rev().collect();
+        while let Some(patch) = open.pop() {
+            let halves = patch.halves(0.0, f64::MIN_POSITIVE, &[]);
+            if let Some((halved, [first, second])) = halves.filter(|_| is_large(&patch)) {
+                steps.push(Step::Byte(byte_of(halved)));
+                open.extend([second, first]);
+            } else {
+                steps.push(Step::Part(parts.len()));
+                parts.push(patch);
+            }
+        }
+    }
+    (parts, steps)
+}
+
+/// The trees of all patches.
+pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
+    let mut all: Vec<PatchTrees> = Vec::new();
+    let (mut patches, mut last) = (0, 0);
+    for step in steps {
+        if matches!(step, Step::Begin) {
+            if patches % TOGETHER == 0 {
+                all.push((patches, 0, Vec::new()));
+                last = 0;
+            }
+            patches += 1;
+        }
+        let Some((_, count, bytes)) = all.last_mut() else {
+            continue;
+        };
+        match step {
+            Step::Begin => *count += 1,
+            Step::Byte(byte) => bytes.push(*byte),
+            Step::Part(part) => records[*part]
+                .all
+                .iter()
+                .for_each(|entry| write(entry, bytes, &mut last)),
+        }
+    }
+    all
+}
+
+fn write(entry: &Entry, bytes: &mut Vec<u8>, last: &mut usize) {
+    match entry {
+        Entry::Byte(byte) => bytes.push(*byte),
+        Entry::Near(triangle) => {
+            bytes.push(2);
+            number(*triangle as usize, bytes);
+        }
+        Entry::Removed(holder) => {
+            bytes.push(3);
+            number(holder.course, bytes);
+            number(holder.solid, bytes);
+            let forth = holder.stretch >= *last;
+            let step = 2 * holder.stretch.abs_diff(*last);
+            number(if forth { step } else { step - 1 }, bytes);
+            *last = holder.stretch;
+            bytes.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
+        }
+    }
+}
+
+/// In groups of seven bits, the lowest first.
+fn number(mut number: usize, bytes: &mut Vec<u8>) {
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+/// Where a triangle of a surface is among all, by its corners.
+pub(super) fn key(corners: &[[f64; 3]; 3]) -> [u64; 9] {
+    std::array::from_fn(|k| (corners[k / 3][k % 3] + 0.0).to_bits())
+}
