@@ -39,9 +39,9 @@ const STEPS: usize = 40;
 impl Left<'_> {
     /// Looks at some patches and their trees.
     pub fn walked(&self, patches: &[Patch], bytes: &[u8]) -> Found {
-        let (mut reader, mut found, mut last) = (Reader(bytes), Found::nothing(), 0);
+        let (mut reader, mut found) = (Reader(bytes), Found::nothing());
         for patch in patches {
-            if self.node(patch, &mut reader, (&mut found, &mut last), 0).is_none() {
+            if self.node(patch, &mut reader, &mut found, 0).is_none() {
                 found.fail(None, around(&patch.corners), "the tree ends early, or is none");
                 return found;
             }
@@ -53,14 +53,8 @@ impl Left<'_> {
         found
     }
 
-    /// `last`: the motion that was named before. `None` if the tree cannot be read.
-    fn node(
-        &self,
-        patch: &Patch,
-        reader: &mut Reader,
-        (found, last): (&mut Found, &mut usize),
-        depth: usize,
-    ) -> Option<()> {
+    /// `None` if the tree cannot be read.
+    fn node(&self, patch: &Patch, reader: &mut Reader, found: &mut Found, depth: usize) -> Option<()> {
         found.nodes += 1;
         let kind = reader.byte().filter(|_| depth < DEEPEST)?;
         let parts = match kind {
@@ -71,7 +65,7 @@ impl Left<'_> {
             }
             16 => patch.threes(),
             _ => {
-                let holds = self.holds(patch, kind, reader, last)?;
+                let holds = self.holds(patch, kind, reader)?;
                 if !holds {
                     found.fail(None, around(&patch.corners), "something may be left there");
                 }
@@ -80,11 +74,11 @@ impl Left<'_> {
         };
         parts
             .iter()
-            .try_for_each(|part| self.node(part, reader, (found, last), depth + 1))
+            .try_for_each(|part| self.node(part, reader, found, depth + 1))
     }
 
     /// Whether a reason holds. `None` if there is no such.
-    fn holds(&self, patch: &Patch, kind: u8, reader: &mut Reader, last: &mut usize) -> Option<bool> {
+    fn holds(&self, patch: &Patch, kind: u8, reader: &mut Reader) -> Option<bool> {
         if kind == 0 {
             return Some(patch.is_flat);
         }
@@ -99,16 +93,9 @@ impl Left<'_> {
                 points.iter().all(near)
             }
             3 => {
-                let (mover, solid, step) = (reader.number()?, reader.number()?, reader.number()?);
+                let (mover, solid, motion) = (reader.number()?, reader.number()?, reader.number()?);
                 let (bodies, path, certain) = self.movers.get(mover)?;
-                // From the last: forth if it is even, back if it is odd.
-                let step = if step % 2 == 0 {
-                    (step / 2) as isize
-                } else {
-                    -(step as isize + 1) / 2
-                };
-                *last = last.checked_add_signed(step)?;
-                let (body, motion) = (bodies.get(solid)?, *certain.get(*last)?);
+                let (body, motion) = (bodies.get(solid)?, *certain.get(motion)?);
                 let stretch = Stretch::new(&self.scene.paths[*path][motion])?;
                 let time = if stretch.is_straight() {
                     None

@@ -7,7 +7,7 @@
 //! | 0 | Nothing is there: an edge or a corner that turns inwards, or none. |
 //! | 1 | Outside of the stock. |
 //! | 2 | Nearer to a triangle: its number. |
-//! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch, as a step from that which was named before, even forth and odd back; then the time, an `f32`, if the stretch is not straight. |
+//! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
 //! | 10, 11, 12 | Halved between the corners 0 and 1, 0 and 2, or 1 and 2. |
 //! | 13, 14, 15 | The same of normals. |
 //! | 16 | For any three of its normals. |
@@ -34,37 +34,41 @@ pub(super) enum Step {
 
 /// The tree of a part.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Record {
-    /// What of it is bytes, and what names a holder.
-    all: Vec<Entry>,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Entry {
-    Byte(u8),
-    Near(u32),
-    Removed(Holder),
-}
+pub(super) struct Record(Vec<u8>);
 
 impl Record {
     pub fn clear(&mut self) {
-        self.all.clear();
+        self.0 = Vec::new();
     }
 
     pub fn outside(&mut self) {
-        self.all.push(Entry::Byte(1));
+        self.0.push(1);
     }
 
     pub fn near(&mut self, triangle: u32) {
-        self.all.push(Entry::Near(triangle));
+        self.0.push(2);
+        self.number(triangle as usize);
     }
 
     pub fn removed(&mut self, holder: Holder) {
-        self.all.push(Entry::Removed(holder));
+        self.0.push(3);
+        for number in [holder.course, holder.solid, holder.stretch] {
+            self.number(number);
+        }
+        self.0.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
     }
 
     pub fn halved(&mut self, halved: Halved) {
-        self.all.push(Entry::Byte(byte_of(halved)));
+        self.0.push(byte_of(halved));
+    }
+
+    /// In groups of seven bits, the lowest first.
+    fn number(&mut self, mut number: usize) {
+        while number > 0x7f {
+            self.0.push(number as u8 | 0x80);
+            number >>= 7;
+        }
+        self.0.push(number as u8);
     }
 }
 
@@ -104,12 +108,11 @@ pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch
 /// The trees of all patches.
 pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
     let mut all: Vec<PatchTrees> = Vec::new();
-    let (mut patches, mut last) = (0, 0);
+    let mut patches = 0;
     for step in steps {
         if matches!(step, Step::Begin) {
             if patches % TOGETHER == 0 {
                 all.push((patches, 0, Vec::new()));
-                last = 0;
             }
             patches += 1;
         }
@@ -119,42 +122,10 @@ pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
         match step {
             Step::Begin => *count += 1,
             Step::Byte(byte) => bytes.push(*byte),
-            Step::Part(part) => records[*part]
-                .all
-                .iter()
-                .for_each(|entry| write(entry, bytes, &mut last)),
+            Step::Part(part) => bytes.extend_from_slice(&records[*part].0),
         }
     }
     all
-}
-
-fn write(entry: &Entry, bytes: &mut Vec<u8>, last: &mut usize) {
-    match entry {
-        Entry::Byte(byte) => bytes.push(*byte),
-        Entry::Near(triangle) => {
-            bytes.push(2);
-            number(*triangle as usize, bytes);
-        }
-        Entry::Removed(holder) => {
-            bytes.push(3);
-            number(holder.course, bytes);
-            number(holder.solid, bytes);
-            let forth = holder.stretch >= *last;
-            let step = 2 * holder.stretch.abs_diff(*last);
-            number(if forth { step } else { step - 1 }, bytes);
-            *last = holder.stretch;
-            bytes.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
-        }
-    }
-}
-
-/// In groups of seven bits, the lowest first.
-fn number(mut number: usize, bytes: &mut Vec<u8>) {
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
 }
 
 /// Where a triangle of a surface is among all, by its corners.

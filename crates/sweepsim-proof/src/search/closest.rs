@@ -4,9 +4,8 @@ use super::gouge::{Cutter, Limits, Tree, parts, trees};
 use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::Run;
-use crate::solid::Target;
+use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
@@ -58,16 +57,22 @@ pub fn closest(
             _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
         };
         let (done, total) = (AtomicUsize::new(0), open.len());
-        let again = |number: &usize| {
+        let again = |root: &Cell, number: &usize| {
             if monitor.cancelled() {
                 return None;
             }
             let (path, moves) = &parts[*number];
-            let found = look(target, &bodies[*path], moves.clone(), limits, (pairs, known, recorded));
+            let found = look(
+                (target, root),
+                &bodies[*path],
+                moves.clone(),
+                limits,
+                (pairs, known, recorded),
+            );
             monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Some(found)
         };
-        let again: Vec<Found> = open.par_iter().with_max_len(1).map(again).collect::<Option<_>>()?;
+        let again: Vec<Found> = target.each(&open, again)?;
         for (number, again) in open.iter().zip(again) {
             let before = std::mem::replace(&mut found[*number], again);
             found[*number].take(before);
@@ -108,7 +113,7 @@ pub fn closest(
 
 /// Of some moves of a body. `known`: so near something is.
 fn look(
-    target: &Target,
+    (target, root): (&Target, &Cell),
     body: &Cutter,
     moves: Range<usize>,
     limits: &Limits,
@@ -123,7 +128,7 @@ fn look(
     let mut all = Found::nothing();
     for solid in body.solids {
         let run = Run::new(solid, &stretches, rounding);
-        let search = Search::new(target, &run, limits, (known, rounding), recorded);
+        let search = Search::new((target, root), &run, limits, (known, rounding), recorded);
         let found = search.run(pairs);
         all.bound = all.bound.min(found.bound);
         all.pairs += found.pairs;

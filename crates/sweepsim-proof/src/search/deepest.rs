@@ -40,6 +40,7 @@ const FINE: f64 = 16.0;
 /// The search for how deep a solid goes on a run of stretches.
 pub(super) struct Search<'a> {
     target: &'a Target,
+    root: &'a Cell,
     run: &'a Run<'a>,
     wanted: Wanted,
     found: Found,
@@ -50,9 +51,10 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(target: &'a Target, run: &'a Run<'a>, wanted: Wanted) -> Self {
+    pub fn new((target, root): (&'a Target, &'a Cell), run: &'a Run<'a>, wanted: Wanted) -> Self {
         Self {
             target,
+            root,
             run,
             wanted,
             found: Found::default(),
@@ -66,7 +68,7 @@ impl<'a> Search<'a> {
         let Some(root) = self.run.nodes.len().checked_sub(1) else {
             return self.found;
         };
-        self.push((f64::INFINITY, 0), &self.target.root, When::Node(root));
+        self.push((f64::INFINITY, 0), self.root, When::Node(root));
         while let Some(pair) = self.open.pop() {
             if pair.depth <= self.enough() {
                 // So are all others.

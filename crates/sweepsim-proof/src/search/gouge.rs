@@ -3,10 +3,9 @@
 use super::deepest::{SHARE, Search, Wanted};
 use super::found::Found;
 use crate::motion::{Run, Stretch};
-use crate::solid::Target;
+use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_motion::{OtherCourses, Path, Segment};
@@ -251,15 +250,15 @@ fn look_at(
     monitor: &dyn Monitor,
 ) -> Option<Vec<Found>> {
     let (done, total) = (AtomicUsize::new(0), parts.len());
-    let look = |(number, moves): &(usize, Range<usize>)| {
+    let look = |root: &Cell, (number, moves): &(usize, Range<usize>)| {
         if monitor.cancelled() {
             return None;
         }
-        let found = look(target, &cutters[*number], moves.clone(), limits, asked);
+        let found = look((target, root), &cutters[*number], moves.clone(), limits, asked);
         monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Some(found)
     };
-    parts.par_iter().with_max_len(1).map(look).collect()
+    target.each(parts, look)
 }
 
 impl Enclosed {
@@ -283,7 +282,13 @@ impl Enclosed {
 }
 
 /// Some moves of a cutter.
-fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, asked: Asked) -> Found {
+fn look(
+    (target, root): (&Target, &Cell),
+    cutter: &Cutter,
+    moves: Range<usize>,
+    limits: &Limits,
+    asked: Asked,
+) -> Found {
     let reach = cutter.reach;
     let stretches = cutter.stretches(moves, limits.deviation);
     let size = stretches
@@ -308,7 +313,7 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
             wanted.pairs = wanted.pairs.min(FIRST_LOOK);
         }
         let run = Run::new(solid, &stretches, wanted.slack);
-        let found = Search::new(target, &run, wanted).run();
+        let found = Search::new((target, root), &run, wanted).run();
         all.beside(found);
     }
     all

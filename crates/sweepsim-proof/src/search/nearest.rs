@@ -16,6 +16,7 @@ use std::collections::BinaryHeap;
 /// The search for how near a solid comes to a target on a run of stretches.
 pub(super) struct Search<'a> {
     target: &'a Target,
+    root: &'a Cell,
     run: &'a Run<'a>,
     level: Level,
     limits: &'a Limits,
@@ -29,7 +30,7 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub fn new(
-        target: &'a Target,
+        (target, root): (&'a Target, &'a Cell),
         run: &'a Run<'a>,
         limits: &'a Limits,
         (known, rounding): (f64, f64),
@@ -37,6 +38,7 @@ impl<'a> Search<'a> {
     ) -> Self {
         Self {
             target,
+            root,
             run,
             level: Level::new(run.solid),
             limits,
@@ -54,7 +56,7 @@ impl<'a> Search<'a> {
             return self.found;
         };
         self.enter();
-        self.push((0.0, 0), &self.target.root, When::Node(root));
+        self.push((0.0, 0), self.root, When::Node(root));
         while let Some(pair) = self.open.pop() {
             if -pair.depth >= self.enough() {
                 // So are all others.

@@ -82,7 +82,7 @@ fn check(scene: &SceneOf, spacing: f64) -> Result<bool, TestCaseError> {
         away(&own) <= witness.depth + 1e-6 || witness.depth == 0.0,
         "{own} is not so near"
     );
-    prop_assert!(solid.depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
+    prop_assert!(Target::new(&soup).expect("closed").depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
     let far = witness.depth - found.bound;
     let decided = found.bound >= limits.depth;
     prop_assert!(far <= limits.width.max(witness.depth / 32.0) + 1e-9 || decided || found.open_count > 0);
