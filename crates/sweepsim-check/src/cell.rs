@@ -13,7 +13,7 @@
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, dot_up, norm_up, scaled, sub, sum_up, unit};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
 const AROUND: f64 = 1.0 + 7e-4;
 const CLIP: f64 = 1.0 + 9e-4;
@@ -46,34 +46,11 @@ pub(crate) struct Cell {
     children: OnceLock<Box<[OnceLock<Self>; 8]>>,
 }
 
-/// Why there is no such cell.
-pub(crate) enum NoCell {
-    /// There are as many as there may be.
-    TooMany,
-    /// It is so small that its centre is not exact.
-    TooSmall,
-}
-
-/// How many more cells there may be.
-pub(crate) struct Budget(AtomicUsize);
-
-impl Budget {
-    /// Of some hundred bytes each; every sixteen corners count as another.
-    pub fn new() -> Self {
-        Self(AtomicUsize::new(4_000_000))
-    }
-
-    fn take(&self, count: usize) -> bool {
-        let less = |left: usize| left.checked_sub(count);
-        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).is_ok()
-    }
-}
-
 impl Cell {
     /// The cube that is divided.
     pub fn root(centre: V3, half: f64, surface: &Surface) -> Self {
         let all = (0..surface.triangles.len() as u32).collect::<Vec<_>>();
-        Self::new((centre, half), surface, None, &all, None)
+        Self::new((centre, half), surface, None, &all, 0.0)
     }
 
     /// `pieces`: of the cell that it is in; otherwise whole triangles.
@@ -82,7 +59,7 @@ impl Cell {
         surface: &Surface,
         pieces: Option<(&[V3], &[u32])>,
         triangles: &[u32],
-        error: Option<f64>,
+        error: f64,
     ) -> Self {
         let reach = 2.0 * half * CLIP;
         let (mut corners, mut ends, mut kept) = (Vec::new(), Vec::new(), Vec::new());
@@ -101,7 +78,7 @@ impl Cell {
             }
         }
         // Each of the six planes adds some four roundings of a coordinate.
-        let error = error.unwrap_or(0.0) + 32.0 * EPS * surface.size;
+        let error = error + 32.0 * EPS * surface.size;
         let near = match kept.len() {
             0 => Near::Nothing(surface.is_outside(&centre)),
             1..=MOST_PIECES => Near::Pieces { corners, ends },
@@ -138,8 +115,11 @@ impl Cell {
         Some(centre)
     }
 
-    pub fn child(&self, octant: usize, surface: &Surface, budget: &Budget) -> Result<&Self, NoCell> {
-        let centre = self.centre_of_child(octant).ok_or(NoCell::TooSmall)?;
+    /// One of its parts, or why there is none.
+    pub fn child(&self, octant: usize, surface: &Surface) -> Result<&Self, &'static str> {
+        let centre = self
+            .centre_of_child(octant)
+            .ok_or("the cell is too small to be divided")?;
         let child = &self.children.get_or_init(Box::default)[octant];
         let corners = match &self.near {
             Near::Pieces { corners, .. } => corners.len(),
@@ -149,26 +129,36 @@ impl Cell {
         // Clipping must not be as inexact as the surroundings are larger.
         let error = self.error + 32.0 * EPS * surface.size;
         if self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
-            return Err(NoCell::TooSmall);
+            return Err("the cell is too small to be divided");
         }
-        if child.get().is_none() && !budget.take(1 + corners / 16) {
-            return Err(NoCell::TooMany);
+        // Of some hundred bytes each; every sixteen corners count as another.
+        let take = |left: usize| left.checked_sub(1 + corners / 16);
+        if child.get().is_none()
+            && surface
+                .cells_left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
+                .is_err()
+        {
+            return Err("the proof takes too many cells");
         }
         Ok(child.get_or_init(|| {
             let own = (centre, 0.5 * self.half);
             match &self.near {
                 Near::Nothing(outside) => Self::with(own, Near::Nothing(*outside), Vec::new(), 0.0),
-                Near::Many => Self::new(own, surface, None, &self.triangles, None),
+                Near::Many => Self::new(own, surface, None, &self.triangles, 0.0),
                 Near::Pieces { corners, ends } => {
-                    Self::new(own, surface, Some((corners, ends)), &self.triangles, Some(self.error))
+                    Self::new(own, surface, Some((corners, ends)), &self.triangles, self.error)
                 }
             }
         }))
     }
 
-    /// Whether nothing of the surface is in the surroundings, and they are outside.
-    pub fn is_clear(&self) -> bool {
-        matches!(self.near, Near::Nothing(Some(true)))
+    /// Whether nothing of the surface is in the surroundings; and whether they are outside.
+    pub fn is_clear(&self) -> (bool, bool) {
+        (
+            matches!(self.near, Near::Nothing(_)),
+            matches!(self.near, Near::Nothing(Some(true))),
+        )
     }
 
     /// How far the cell reaches along `n`.

@@ -1,24 +1,22 @@
 //! The file: JSON, with the trees deflated and in base64, and the digest of all that comes before it at its end.
 
 use crate::scene::hexadecimal;
-use crate::solid::Solid;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// What a certificate says that it is.
 const FORMAT: &str = "sweepsim certificate";
 /// Certificates of other versions are refused.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// The last field of the file.
 const DIGEST: &str = ",\"digest\":\"";
 /// Trees of more bytes are not taken.
-const MOST_BYTES: usize = 1 << 31;
+const MOST_BYTES: usize = 1 << 28;
 /// Digits of a digest.
 const DIGITS: usize = 64;
 
@@ -35,10 +33,10 @@ pub struct Certificate {
     pub request: serde_json::Value,
     /// The files that the request names.
     pub files: Vec<FileDigest>,
-    /// The [digest](crate::Scene::digest) of target, tools and paths.
+    /// The [digest](crate::Scene::digest) of all that is asked.
     pub scene: String,
-    /// What is claimed.
-    pub statement: Vec<Claim>,
+    /// An answer to each of its questions; none where nothing can be checked.
+    pub claims: Vec<Option<Claim>>,
 }
 
 /// A file, and its SHA-256 in hexadecimal.
@@ -51,40 +49,54 @@ pub struct FileDigest {
     pub sha256: String,
 }
 
-/// A statement with its proof.
+/// An answer with its proof.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Claim {
-    /// `gouge`: the depth of cutters in the target.
+    /// The name of the question.
     pub about: String,
-    /// How deep they may go.
-    pub limit: f64,
-    /// The largest depth is between these.
-    pub enclosure: [f64; 2],
-    /// Where the lower one is attained.
+    /// What is measured is no more.
+    pub bound: f64,
+    /// A place where a depth is attained.
     pub witness: Option<Witness>,
-    /// The cube that is divided: its centre, and half of its size.
+    /// For depths, the cube that is divided: its centre, and half of its size.
     pub root: ([f64; 3], f64),
-    /// Convex solids that cover each tool.
-    pub tools: BTreeMap<u32, Vec<Solid>>,
-    /// The [trees](trees), deflated, in base64.
-    pub trees: String,
+    /// For each mover, of which curves its solids are: so many together, or one in so many parts.
+    pub covers: Vec<Vec<[usize; 2]>>,
+    /// The proof.
+    pub trees: Vec<Tree>,
 }
 
 /// Where a depth is attained.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Witness {
-    /// The path.
+    /// The path of what goes so deep.
     pub path: usize,
-    /// The move.
-    pub number: usize,
-    /// The first move, and the number of moves, of the tree that it is in.
-    pub moves: [usize; 2],
-    /// Which of the pieces of these moves, and the parameter in it.
-    pub piece: (usize, f64),
+    /// The number of the motion on it.
+    pub motion: usize,
+    /// The time in it.
+    pub time: f64,
     /// Where.
     pub place: [f64; 3],
+    /// How deep.
+    pub depth: f64,
+}
+
+/// A part of a proof.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tree {
+    /// What of the question's moves; of heights, 0.
+    pub mover: usize,
+    /// Which of its solids; of heights, 0.
+    pub solid: usize,
+    /// The first motion or patch.
+    pub first: usize,
+    /// How many motions or patches.
+    pub count: usize,
+    /// The tree, or the trees of patches one after the other, [packed].
+    pub bytes: String,
 }
 
 /// Why something is not a certificate.
@@ -112,23 +124,24 @@ struct Header {
 }
 
 impl Certificate {
-    /// A certificate of version 1.
+    /// A certificate of this version.
     #[must_use]
     pub fn new(
         made_by: String,
         request: serde_json::Value,
         files: Vec<FileDigest>,
         scene: String,
-        statement: Vec<Claim>,
+        claims: Vec<Option<Claim>>,
     ) -> Self {
+        let (format, version) = (FORMAT.to_owned(), VERSION);
         Self {
-            format: FORMAT.to_owned(),
-            version: VERSION,
+            format,
+            version,
             made_by,
             request,
             files,
             scene,
-            statement,
+            claims,
         }
     }
 
@@ -151,25 +164,21 @@ impl Certificate {
     /// [`NoCertificate`].
     pub fn read(text: &[u8]) -> Result<Self, NoCertificate> {
         let end = DIGEST.len() + DIGITS + "\"}\n".len();
-        let (content, end) = text
-            .split_at_checked(text.len().saturating_sub(end))
-            .ok_or(NoCertificate::End)?;
+        let parts = text.split_at_checked(text.len().saturating_sub(end));
+        let (content, end) = parts.ok_or(NoCertificate::End)?;
         let digest = end
             .strip_prefix(DIGEST.as_bytes())
-            .and_then(|end| end.strip_suffix(b"\"}\n"))
-            .ok_or(NoCertificate::End)?;
-        if digest != digest_of(content).as_bytes() {
+            .and_then(|end| end.strip_suffix(b"\"}\n"));
+        if digest.ok_or(NoCertificate::End)? != digest_of(content).as_bytes() {
             return Err(NoCertificate::Changed);
         }
         let whole = [content, b"}"].concat();
         let header: Header = serde_json::from_slice(&whole)?;
-        if header.format != FORMAT {
-            return Err(NoCertificate::End);
+        match (header.format == FORMAT, header.version) {
+            (false, _) => Err(NoCertificate::End),
+            (true, VERSION) => Ok(serde_json::from_slice(&whole)?),
+            (true, version) => Err(NoCertificate::Version(version)),
         }
-        if header.version != VERSION {
-            return Err(NoCertificate::Version(header.version));
-        }
-        Ok(serde_json::from_slice(&whole)?)
     }
 }
 
@@ -179,72 +188,12 @@ pub fn digest_of(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// A tree that is to be written.
-#[derive(Clone, Copy, Debug)]
-pub struct TreePart<'a> {
-    /// The path.
-    pub path: usize,
-    /// The first move, and how many.
-    pub moves: [usize; 2],
-    /// Which of the solids of the tool.
-    pub solid: usize,
-    /// The tree.
-    pub bytes: &'a [u8],
-}
-
-/// Trees, deflated and in base64: each after five numbers: path, first move, moves, solid, and bytes. Those of
-/// a path and a solid are in the order of moves.
+/// The bytes of a tree, deflated and in base64.
 #[must_use]
-pub fn trees<'a>(parts: impl IntoIterator<Item = TreePart<'a>>) -> String {
-    let mut all = Vec::new();
-    let number = |mut number: usize, all: &mut Vec<u8>| {
-        while number > 0x7f {
-            all.push(number as u8 | 0x80);
-            number >>= 7;
-        }
-        all.push(number as u8);
-    };
-    for part in parts {
-        let [first, count] = part.moves;
-        for own in [part.path, first, count, part.solid, part.bytes.len()] {
-            number(own, &mut all);
-        }
-        all.extend_from_slice(part.bytes);
-    }
-    STANDARD.encode(compress_to_vec(&all, 6))
+pub fn packed(bytes: &[u8]) -> String {
+    STANDARD.encode(compress_to_vec(bytes, 6))
 }
 
-impl Claim {
-    pub(crate) fn bytes(&self) -> Option<Vec<u8>> {
-        let packed = STANDARD.decode(&self.trees).ok()?;
-        decompress_to_vec_with_limit(&packed, MOST_BYTES).ok()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn other_versions_and_other_files_are_refused() {
-        let empty = || serde_json::Value::Null;
-        let certificate = Certificate::new("a test".into(), empty(), Vec::new(), String::new(), Vec::new());
-        let text = certificate.written().expect("a notation");
-        assert_eq!(Certificate::read(text.as_bytes()).expect("a certificate"), certificate);
-        let later = Certificate {
-            version: 2,
-            ..certificate.clone()
-        };
-        let text = later.written().expect("a notation");
-        assert!(matches!(
-            Certificate::read(text.as_bytes()),
-            Err(NoCertificate::Version(2))
-        ));
-        let other = Certificate {
-            format: "a shopping list".into(),
-            ..certificate
-        };
-        let text = other.written().expect("a notation");
-        assert!(matches!(Certificate::read(text.as_bytes()), Err(NoCertificate::End)));
-    }
+pub(crate) fn unpacked(text: &str) -> Option<Vec<u8>> {
+    decompress_to_vec_with_limit(&STANDARD.decode(text).ok()?, MOST_BYTES).ok()
 }

@@ -1,13 +1,14 @@
 //! The whole check: what must fit together before trees are walked, and the witness.
 
-use crate::cell::{Budget, Cell};
-use crate::certificate::Claim;
-use crate::motion::{Run, Stretch, stretches};
-use crate::scene::{Move, Scene};
-use crate::solid::{self, Body};
+use crate::cell::Cell;
+use crate::certificate::{Claim, Tree, unpacked};
+use crate::height::{Left, off};
+use crate::motion::{Run, Stretch};
+use crate::patch::patches;
+use crate::scene::{Course, Measure, Question, Scene};
 use crate::surface::Surface;
-use crate::tree::{Tree, parts};
-use crate::vector::{EPS, MORE, V3, dot, norm, scaled, size, sub};
+use crate::tool::{Body, bodies};
+use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
 use crate::walk::{Failed, Found, Walk};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -17,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Checked {
-    /// No cutter goes deeper, if nothing failed: the largest bound of all leaves.
+    /// What is measured is no more, if nothing failed.
     pub bound: f64,
     /// The nodes of all trees.
     pub nodes: usize,
@@ -25,69 +26,79 @@ pub struct Checked {
     pub failed: Vec<Failed>,
     /// How much that is.
     pub failed_count: usize,
-    /// What is wrong with the certificate as a whole.
-    pub wrong: Vec<String>,
+    /// What is wrong with the claim as a whole.
+    pub wrong: Option<String>,
 }
 
 impl Checked {
-    /// Whether the enclosure that the certificate states is proven.
+    /// Whether what is claimed is proven.
     #[must_use]
     pub fn is_proven(&self) -> bool {
-        self.failed_count == 0 && self.wrong.is_empty()
+        self.failed_count == 0 && self.wrong.is_none()
     }
 }
 
-/// Checks what a certificate claims of a scene: that its enclosure holds the largest depth of any point of any cutter
-/// at any time. `threads`: how many work at it.
+/// Checks what is claimed in answer to a question: that what is measured is at most its bound, and at least as much as at
+/// its witness. `threads`: how many work at it.
 #[must_use]
-pub fn check(scene: &Scene, claim: &Claim, threads: usize) -> Checked {
+pub fn check(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> Checked {
     let mut checked = Checked::default();
-    if let Err(wrong) = checked_by(scene, claim, threads, &mut checked) {
-        checked.wrong.push(wrong);
+    match found(scene, question, claim, threads) {
+        Err(wrong) => checked.wrong = Some(wrong),
+        Ok(mut found) => {
+            found.failed.sort_by_key(|failed| failed.place);
+            found.failed.truncate(20);
+            let Found {
+                nodes,
+                bound,
+                failed,
+                failed_count,
+            } = found;
+            checked = Checked {
+                bound,
+                nodes,
+                failed,
+                failed_count,
+                wrong: None,
+            };
+        }
     }
     checked
 }
 
-/// Trees of more moves are not taken.
-const MOST_MOVES: usize = 4096;
+/// Trees of more motions are not taken.
+const MOST_MOTIONS: usize = 1 << 16;
 
-fn checked_by(scene: &Scene, claim: &Claim, threads: usize, checked: &mut Checked) -> Result<(), String> {
-    if claim.about != "gouge" {
-        return Err(format!("`{}` is not known: expected `gouge`", claim.about));
+fn found(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> Result<Found, String> {
+    let is_length = |length: f64| length >= 0.0 && length.is_finite();
+    if claim.about != question.about || !claim.bound.is_finite() || !is_length(scene.deviation) {
+        return Err("the claim does not answer the question".into());
     }
-    let [lo, hi] = claim.enclosure;
-    if !(lo >= 0.0 && hi >= lo && hi.is_finite() && scene.deviation >= 0.0 && scene.deviation.is_finite()) {
-        return Err("the enclosure has no finite ends".into());
+    let triangles = scene.solids.get(question.solid).ok_or("there is no such solid")?;
+    let surface = Surface::new(triangles)?;
+    let mut movers: Vec<Vec<Body>> = Vec::with_capacity(question.movers.len());
+    for (number, (path, outline)) in question.movers.iter().enumerate() {
+        let (outline, cover) = (scene.outlines.get(*outline), claim.covers.get(number));
+        let (outline, cover) = outline
+            .zip(cover)
+            .ok_or("something that moves has no outline, or no cover")?;
+        movers.push(bodies(outline, cover)?);
+        scene.paths.get(*path).ok_or("something that moves has no path")?;
     }
-    let surface = Surface::new(&scene.triangles)?;
-    let mut bodies: BTreeMap<u32, Vec<Body>> = BTreeMap::new();
-    for (number, outline) in &scene.tools {
-        let solids = claim.tools.get(number).map_or(&[][..], |solids| solids);
-        let own = solid::covering(outline, solids).map_err(|why| format!("tool {number}: {why}"))?;
-        bodies.insert(*number, own);
+    match question.measure {
+        Measure::Depth => depth(scene, (question, &movers), claim, &surface, threads),
+        Measure::Height => height(scene, (question, &movers), claim, &surface, threads),
     }
-    let (centre, half) = claim.root;
-    let [low, high] = surface.bounds();
-    let holds = |k: usize| centre[k] - half <= low[k] && centre[k] + half >= high[k];
-    // Added with rounding: compared with room for it.
-    let room = 4.0 * EPS * (surface.size + half);
-    let has_room = (0..3).all(|k| low[k] - (centre[k] - half) >= -room && centre[k] + half - high[k] >= -room);
-    if !(half > 0.0 && half.is_finite() && (0..3).all(holds) && has_room) {
-        return Err("the cube of the certificate does not hold the target".into());
-    }
-    let bytes = claim.bytes().ok_or("the trees are not readable")?;
-    let trees = in_order(scene, &bodies, &bytes)?;
-    let (budget, root) = (Budget::new(), Cell::root(centre, half, &surface));
-    let (next, all) = (AtomicUsize::new(0), Mutex::new(Found::default()));
+}
+
+/// What is found of some trees, by so many threads.
+fn all(trees: &[Tree], threads: usize, one: impl Fn(&Tree, &[u8]) -> Found + Sync) -> Result<Found, String> {
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(Found::nothing()));
     let work = || {
         while let Some(tree) = trees.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let own = one(scene, &bodies, (&surface, &budget, &root), tree, hi);
-            if let Ok(mut all) = all.lock() {
-                all.nodes += own.nodes;
-                all.bound = all.bound.max(own.bound);
-                all.failed_count += own.failed_count;
-                all.failed.extend(own.failed);
-            }
+            let own =
+                unpacked(&tree.bytes).map_or_else(|| failed("the tree is not readable"), |bytes| one(tree, &bytes));
+            found.lock().expect("no thread has panicked").join(own);
         }
     };
     std::thread::scope(|scope| {
@@ -96,118 +107,180 @@ fn checked_by(scene: &Scene, claim: &Claim, threads: usize, checked: &mut Checke
         }
         work();
     });
-    let found = all.into_inner().map_err(|_| "the check did not end")?;
-    (checked.nodes, checked.bound) = (found.nodes, found.bound);
-    (checked.failed, checked.failed_count) = (found.failed, found.failed_count);
-    checked.failed.sort_by_key(|failed| (failed.path, failed.number));
-    checked.failed.truncate(20);
-    witness(scene, claim, &surface)
+    found.into_inner().map_err(|_| "the check did not end".into())
 }
 
-/// The trees, if they are about all moves of all paths and all solids of their tools, each once.
-fn in_order<'a>(scene: &Scene, bodies: &BTreeMap<u32, Vec<Body>>, bytes: &'a [u8]) -> Result<Vec<Tree<'a>>, String> {
-    let all = parts(bytes).ok_or("the trees are not readable")?;
-    let mut known: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for tree in &all {
-        // In order: where the last one ended, the next begins.
-        let end = known.entry((tree.path, tree.solid)).or_default();
-        if *end != tree.first || tree.count == 0 || tree.count > MOST_MOVES {
-            return Err("the trees are not about each move once".into());
+fn failed(why: &'static str) -> Found {
+    let mut found = Found::nothing();
+    found.fail(None, [[0.0; 3]; 2], why);
+    found
+}
+
+type Asked<'a> = (&'a Question, &'a [Vec<Body>]);
+
+fn depth(
+    scene: &Scene,
+    (question, movers): Asked,
+    claim: &Claim,
+    surface: &Surface,
+    threads: usize,
+) -> Result<Found, String> {
+    let (centre, half) = claim.root;
+    let [low, high] = surface.bounds();
+    // Added with rounding: compared with room for it.
+    let room = 4.0 * EPS * (surface.size + half);
+    let holds = |k: usize| centre[k] - half <= low[k] - room && centre[k] + half >= high[k] + room;
+    if !(half > 0.0 && half.is_finite() && (0..3).all(holds)) {
+        return Err("the cube of the certificate does not hold the solid".into());
+    }
+    // Each solid of each mover on all of its path, once: where one tree ends, the next begins.
+    let mut ends: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for tree in &claim.trees {
+        let end = ends.entry((tree.mover, tree.solid)).or_default();
+        if *end != tree.first || tree.count == 0 || tree.count > MOST_MOTIONS {
+            return Err("the trees are not about each motion once".into());
         }
         *end += tree.count;
     }
-    for (number, path) in scene.paths.iter().enumerate() {
-        let solids = bodies.get(&path.tool).ok_or("a path has no tool")?;
-        let is_path = path.poses.len() == path.moves.len() + 1;
-        let others = path.others.windows(2).all(|pair| pair[0].0 <= pair[1].0)
-            && path.others.iter().all(|(own, _)| *own < path.moves.len());
-        if !is_path || !others {
-            return Err(format!("path {number} is none"));
-        }
-        for solid in 0..solids.len() {
-            let end = known.remove(&(number, solid)).unwrap_or_default();
-            if end != path.moves.len() {
-                return Err(format!("not all moves of path {number} have a tree"));
-            }
+    for (mover, own) in movers.iter().enumerate() {
+        let length = scene.paths[question.movers[mover].0].len();
+        let is_whole = |solid: usize| ends.remove(&(mover, solid)).unwrap_or(0) == length;
+        if !(0..own.len()).all(is_whole) {
+            return Err(format!(
+                "not all motions of path {} have a tree",
+                question.movers[mover].0
+            ));
         }
     }
-    if !known.is_empty() {
+    if !ends.is_empty() {
         return Err("there are trees of other paths or tools".into());
     }
-    Ok(all)
-}
-
-/// How far pieces may be from the poses at their ends.
-fn joins(scene: &Scene, surface: &Surface) -> f64 {
-    2.0 * scene.deviation + 1e-9 * surface.size
-}
-
-fn one(
-    scene: &Scene,
-    bodies: &BTreeMap<u32, Vec<Body>>,
-    (surface, budget, root): (&Surface, &Budget, &Cell),
-    tree: &Tree,
-    hi: f64,
-) -> Found {
-    let path = &scene.paths[tree.path];
-    let failed = |why| Found {
-        failed: vec![Failed {
-            path: tree.path,
-            number: tree.first,
-            low: [0.0; 3],
-            high: [0.0; 3],
-            why,
-        }],
-        failed_count: 1,
-        ..Found::default()
-    };
-    let own = stretches(path, tree.first..tree.first + tree.count, joins(scene, surface));
-    let Some(own) = own.filter(|own| !own.is_empty()) else {
-        return failed("the moves are no path");
-    };
-    let run = Run::new(&bodies[&path.tool][tree.solid], &own);
-    // Linear moves are exact.
-    let moves = &path.moves[tree.first..tree.first + tree.count];
-    let is_exact = moves.iter().all(|own| *own == Move::Linear);
-    let more = if is_exact { 0.0 } else { scene.deviation };
-    Walk::new((surface, budget), &run, tree, (hi, more)).walked(root)
-}
-
-/// Whether the lower end of the enclosure is attained: the witness is in the cutter, and as deep in the target.
-fn witness(scene: &Scene, claim: &Claim, surface: &Surface) -> Result<(), String> {
-    let lo = claim.enclosure[0];
-    let Some(witness) = &claim.witness else {
-        return if lo > 0.0 {
-            Err("there is no witness".into())
-        } else {
-            Ok(())
+    let root = Cell::root(centre, half, surface);
+    let one = |tree: &Tree, bytes: &[u8]| {
+        let path = question.movers[tree.mover].0;
+        let motions = &scene.paths[path][tree.first..tree.first + tree.count];
+        let Some(stretches) = motions.iter().map(Stretch::new).collect::<Option<Vec<_>>>() else {
+            return failed("a motion is none");
         };
+        let body = &movers[tree.mover][tree.solid];
+        if claim.bound < 0.0 && !starts_outside(body, &stretches, surface, -claim.bound) {
+            return failed("it is not known that it is outside at the start");
+        }
+        let run = Run::new(body, &stretches);
+        // Linear motions are exact.
+        let is_exact = motions.iter().all(|own| matches!(own.course, Course::Linear(_)));
+        let more = if is_exact { 0.0 } else { scene.deviation };
+        Walk::new(surface, &run, path, bytes, [claim.bound, more]).walked(&root)
     };
-    let path = scene.paths.get(witness.path).ok_or("the witness has no path")?;
-    let outline = scene.tools.iter().find(|(number, _)| *number == path.tool);
-    let (_, outline) = outline.ok_or("the witness has no tool")?;
-    let [first, count] = witness.moves;
-    let is_there = count <= MOST_MOVES && first.checked_add(count).is_some_and(|end| end <= path.moves.len());
-    let all = is_there
-        .then(|| stretches(path, first..first + count, joins(scene, surface)))
-        .flatten();
-    let (piece, t) = witness.piece;
-    let stretch: Option<&Stretch> = all.as_ref().and_then(|all| all.get(piece));
-    let stretch = stretch.filter(|stretch| (0.0..=1.0).contains(&t) && stretch.number == witness.number);
-    let end = stretch.ok_or("the witness has no move")?.at(t);
-    let place: V3 = witness.place;
-    let off = sub(&place, &end.tip);
-    let along = dot(&off, &end.axis);
-    let across = norm(&sub(&off, &scaled(&end.axis, along)));
-    let errors = end.tip_error + end.axis_error * norm(&off) * 4.0 + 64.0 * EPS * (size(&place) + norm(&off));
-    let off = (solid::off_tool(outline, [across, along]) + errors) * MORE;
-    let (distance, _) = surface.nearest(&place);
-    let is_inside = surface.is_outside(&place) == Some(false);
-    // A point of the cutter is within this of the place.
-    let depth = distance - (off + scene.deviation) * MORE;
-    if !(is_inside && depth >= lo) {
-        let [x, y, z] = place;
-        return Err(format!("the cutter is not so deep at the witness, ({x}, {y}, {z})"));
+    witness(scene, (question, movers), claim, surface)?;
+    all(&claim.trees, threads, one)
+}
+
+/// Whether a point of a solid is outside where each stretch begins: unless it was nearer than `distance` to there before.
+fn starts_outside(body: &Body, stretches: &[Stretch], surface: &Surface, distance: f64) -> bool {
+    let height = 0.5 * (body.heights[0] + body.heights[1]);
+    let [starts, ends] = [0, 1].map(|end| {
+        let place = |own: &Stretch| add(&own.ends[end].tip, &scaled(&own.ends[end].axis, height));
+        stretches.iter().map(place).collect::<Vec<_>>()
+    });
+    let is_near = |k: usize| k > 0 && norm(&sub(&starts[k], &ends[k - 1])) < 0.5 * distance;
+    (0..starts.len()).all(|k| is_near(k) || surface.is_outside(&starts[k]) == Some(true))
+}
+
+/// Whether a witness is in the mover, and as deep in the solid as it says.
+fn witness(scene: &Scene, (question, movers): Asked, claim: &Claim, surface: &Surface) -> Result<(), String> {
+    let Some(witness) = &claim.witness else { return Ok(()) };
+    let motion = scene
+        .paths
+        .get(witness.path)
+        .and_then(|path| path.get(witness.motion))
+        .filter(|_| (0.0..=1.0).contains(&witness.time));
+    let at = motion
+        .and_then(Stretch::new)
+        .ok_or("the witness has no motion")?
+        .at(witness.time);
+    let place = witness.place;
+    // From the middle of a solid, it is a little farther in: then it is no matter that it is on its surface.
+    let is_in = |body: &Body| {
+        let middle = add(&at.tip, &scaled(&at.axis, 0.5 * (body.heights[0] + body.heights[1])));
+        let inner = add(&place, &scaled(&sub(&middle, &place), INNER));
+        let is_in = off(body, &at, &inner, 0.0) <= 0.0;
+        let deep = surface.nearest(&place).0 - (norm_up(&sub(&inner, &place)) + scene.deviation) * MORE;
+        is_in && deep >= witness.depth
+    };
+    let on_path = question
+        .movers
+        .iter()
+        .zip(movers)
+        .filter(|((path, _), _)| *path == witness.path);
+    let own = on_path.map(|(_, bodies)| bodies);
+    if surface.is_outside(&place) == Some(false) && own.flatten().any(is_in) {
+        return Ok(());
     }
-    Ok(())
+    let [x, y, z] = place;
+    Err(format!("nothing is so deep at the witness, ({x}, {y}, {z})"))
+}
+
+/// In parts of the way to the middle of a solid.
+const INNER: f64 = 1e-10;
+
+/// No margin is less than this, in parts of the largest coordinate: more than a thousand roundings, and what is flat.
+const LEAST_MARGIN: f64 = 5e-9;
+
+fn height(
+    scene: &Scene,
+    (question, movers): Asked,
+    claim: &Claim,
+    surface: &Surface,
+    threads: usize,
+) -> Result<Found, String> {
+    if claim.witness.is_some() {
+        return Err("heights have no witness".into());
+    }
+    let reach = movers.iter().flatten().map(|body| body.reach).fold(0.0, f64::max);
+    let least = scene.deviation + LEAST_MARGIN * (surface.size + reach + claim.bound);
+    if !(scene.margin >= least && scene.margin.is_finite() && claim.bound > scene.margin) {
+        return Err("the margin is too small, or the height is".into());
+    }
+    // In front of each triangle is the outside.
+    let in_front = |[a, b, c]: &[[f64; 3]; 3]| {
+        let middle = scaled(&add(&add(a, b), c), 1.0 / 3.0);
+        let normal = crate::vector::cross(&sub(b, a), &sub(c, a));
+        let step = scaled(&normal, 1e-9 * surface.size / norm(&normal));
+        surface.is_outside(&add(&middle, &step)) == Some(true)
+    };
+    if !surface.triangles.iter().all(in_front) {
+        return Err("in front of a triangle is not the outside".into());
+    }
+    let patches = patches(surface).ok_or("a triangle has no area")?;
+    let mut end = 0_usize;
+    for tree in &claim.trees {
+        if tree.first != end {
+            return Err("the trees are not about each patch once".into());
+        }
+        end = end.saturating_add(tree.count);
+    }
+    if end != patches.len() {
+        return Err("not all patches have a tree".into());
+    }
+    let certain = |path: usize| {
+        (0..scene.paths[path].len())
+            .filter(|k| !scene.paths[path][*k].possible)
+            .collect()
+    };
+    let paths = question.movers.iter().map(|(path, _)| (*path, certain(*path)));
+    let movers = movers
+        .iter()
+        .zip(paths)
+        .map(|(bodies, (path, certain))| (&bodies[..], path, certain))
+        .collect();
+    let left = Left {
+        scene,
+        surface,
+        movers,
+        distance: claim.bound,
+    };
+    all(&claim.trees, threads, |tree, bytes| {
+        left.walked(&patches[tree.first..tree.first + tree.count], bytes)
+    })
 }

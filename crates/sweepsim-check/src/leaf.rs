@@ -5,21 +5,30 @@
 //! of the times; `r(n)` bounds `⟨n, x⟩` over `B` and over `B ∩ H` ([`motion`](crate::motion)).
 //!
 //! - **Missed, separated**: a direction `n` with `max_H ⟨n, ·⟩ + r(−n) < 0`: no point of `B` is in `H`.
-//! - **Outside**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
+//! - **Clear**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
 //! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and
 //!   `√3 h`.
 //! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`,
 //!   and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What
 //!   is above all planes in `H′` is convex and without surface: one place of it is outside of `T`, so all of it
 //!   is. If `|w| ≤ h`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
-//!   multiple of it. *Cell lifted* is the same with all of `H` instead of `B`.
+//!   multiple of it.
 //! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`,
 //!   as far as that is at most `h`; the smaller of both is at most their mean.
+//!
+//! Depths of less than 0 are distances, with the other sign. If `max_S ⟨n, ·⟩ + r(−n) ≤ −d` for a unit vector `n` and
+//! all of the surface `S ∩ H`, `B` is at least `d` from it. So then
+//!
+//! - **Missed, separated** say that `B` is so far from all of `H`, and **lifted** by one normal, from the surface in
+//!   `H′`, wherever that is outside;
+//! - **clear**, that no surface is in `H`.
+//!
+//! All times and all of the surface are in leaves; so a connected solid that is outside once, is always outside.
 
 use crate::cell::Cell;
 use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
-use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, sub};
+use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
 
 /// Depths that differ by no more, in parts of half a cell, are about the same.
 const ABOUT: f64 = 1e-6;
@@ -42,9 +51,34 @@ pub(crate) struct Near<'a> {
     pub during: During<'a>,
     pub cell: &'a Cell,
     pub surface: &'a Surface,
+    /// What is to be shown: it is no deeper. Less than 0 of distances.
+    pub most: f64,
 }
 
 impl Near<'_> {
+    /// What a leaf of a kind shows, if it holds: no point is deeper. It is −∞ if there are no points.
+    pub fn bound(&self, kind: u8, normals: &[V3]) -> Option<f64> {
+        let nothing = |is_empty: bool| is_empty.then_some(f64::NEG_INFINITY);
+        match (kind, normals) {
+            (2, _) => {
+                let distance = (-self.most).max(0.0);
+                nothing(
+                    matches!(self.during, During::Node(node) if node.misses(&self.cell.centre, self.cell.half, distance)),
+                )
+            }
+            (5, [n]) => {
+                let (cell, solid) = (self.cell.support_up(n), self.reach_up(&scaled(n, -1.0)));
+                let apart = self.along(cell, solid, n);
+                (apart < 0.0).then_some(if self.most < 0.0 { apart } else { f64::NEG_INFINITY })
+            }
+            (6, [n]) => self.lifted(n),
+            (7 | 8, _) if self.most >= 0.0 => self.lifted_above(normals),
+            (9, [n, m]) if self.most >= 0.0 => self.slab(n, m),
+            // Clear cells are known, and middles.
+            _ => None,
+        }
+    }
+
     /// `r(n)` over `B`.
     fn reach_up(&self, n: &V3) -> f64 {
         let (reach, bend) = match &self.during {
@@ -60,32 +94,37 @@ impl Near<'_> {
         self.reach_up(n).min(self.cell.support_up(n))
     }
 
+    /// The sum of two heights along `n`, as a multiple of the unit vector.
+    #[allow(clippy::unused_self)]
+    fn along(&self, top: f64, reach: f64, n: &V3) -> f64 {
+        let (sum, length) = (top + reach + 2.0 * EPS * (top.abs() + reach.abs()), norm_up(n));
+        sum / if sum > 0.0 {
+            length * (2.0 - MORE) * (2.0 - MORE)
+        } else {
+            length
+        }
+    }
+
     /// The cell is not lifted by more than this: all that is lifted stays in the surroundings.
-    fn most(&self) -> f64 {
+    fn farthest(&self) -> f64 {
         self.cell.half * (1.0 + 1e-6)
     }
 
-    pub fn missed(&self) -> bool {
-        matches!(self.during, During::Node(node) if node.misses(&self.cell.centre, self.cell.half))
-    }
-
-    pub fn separated(&self, n: &V3) -> bool {
-        let (cell, solid) = (self.cell.support_up(n), self.reach_up(&scaled(n, -1.0)));
-        cell + solid + 2.0 * EPS * (cell.abs() + solid.abs()) < 0.0
-    }
-
     /// Lifted along one normal.
-    pub fn lifted(&self, n: &V3, whole_cell: bool) -> Option<f64> {
+    fn lifted(&self, n: &V3) -> Option<f64> {
         let down = scaled(n, -1.0);
-        let reach = if whole_cell {
-            self.cell.support_up(&down)
-        } else {
-            self.reach_in_cell_up(&down)
-        };
+        if self.most < 0.0 {
+            return Some(self.along(self.cell.top_up(n)?, self.reach_up(&down), n));
+        }
         let top = self.top_of_outside(n)?;
-        let lift = top + reach;
-        let value = (lift + 2.0 * EPS * (top.abs() + reach.abs())) / length_for(lift, n);
-        (value <= self.most()).then_some(value)
+        // All of the cell, or else what of the solid is in it.
+        let whole = self.along(top, self.cell.support_up(&down), n);
+        let value = if whole <= self.most.min(self.farthest()) {
+            whole
+        } else {
+            self.along(top, self.reach_in_cell_up(&down), n)
+        };
+        (value <= self.farthest()).then_some(value)
     }
 
     /// `e` of a plane, if what is above it in the surroundings is outside.
@@ -95,7 +134,7 @@ impl Near<'_> {
         (dot_down(n, &corner) > top).then_some(top)
     }
 
-    pub fn slab(&self, n: &V3, m: &V3) -> Option<f64> {
+    fn slab(&self, n: &V3, m: &V3) -> Option<f64> {
         // Of unit length, but for a few roundings: the lengths are divided by.
         let (a, b) = (self.top_of_outside(n)?, self.top_of_outside(m)?);
         let [n_long, m_long] = [n, m].map(|n| norm_up(n) / MORE);
@@ -103,12 +142,12 @@ impl Near<'_> {
         let mean = scaled(&add(&scaled(n, 1.0 / n_long), &scaled(m, 1.0 / m_long)), -0.5);
         let reach = self.cell.support_up(&mean);
         let value = 0.5 * (a + b) + reach;
-        let off = 16.0 * EPS * (a.abs() + b.abs() + crate::vector::size(&self.cell.centre) + self.cell.half);
-        (value + off <= self.most()).then_some(value + off)
+        let off = 16.0 * EPS * (a.abs() + b.abs() + size(&self.cell.centre) + self.cell.half);
+        (value + off <= self.farthest()).then_some(value + off)
     }
 
     /// Lifted above two or three planes.
-    pub fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
+    fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
         let reach: Vec<f64> = normals
             .iter()
             .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
@@ -125,17 +164,17 @@ impl Near<'_> {
         let half = self.cell.half;
         let used: Vec<usize> = (0..normals.len()).filter(|i| tops[*i] > f64::NEG_INFINITY).collect();
         let normals: Vec<V3> = used.iter().map(|i| normals[*i]).collect();
-        let size = self.surface.size + crate::vector::size(&self.cell.centre);
+        let scale = self.surface.size + size(&self.cell.centre);
         // The lift is looked for a little beyond what is needed, and then checked.
-        let more = 64.0 * EPS * size;
+        let more = 64.0 * EPS * scale;
         let needs: Vec<f64> = used.iter().map(|i| (tops[*i] + reach[*i]).max(-half) + more).collect();
         let lift = shortest(&normals, &needs)?;
         let lifts = used
             .iter()
             .zip(&normals)
-            .all(|(i, n)| dot_down(n, &lift) >= tops[*i] + reach[*i] + 4.0 * EPS * size);
+            .all(|(i, n)| dot_down(n, &lift) >= tops[*i] + reach[*i] + 4.0 * EPS * scale);
         let value = norm_up(&lift);
-        if !lifts || value > self.most() {
+        if !lifts || value > self.farthest() {
             return None;
         }
         // A place above all planes, in the surroundings, that is outside.
@@ -144,16 +183,6 @@ impl Near<'_> {
         let place = self.cell.place(&shortest(&normals, &needs)?)?;
         let is_above = used.iter().zip(&normals).all(|(i, n)| dot_down(n, &place) > tops[*i]);
         (is_above && self.surface.is_outside(&place) == Some(true)).then_some(value)
-    }
-}
-
-/// What a height along `n` is divided by: a bound of the length of `n`, so that the quotient is not too small.
-fn length_for(height: f64, n: &V3) -> f64 {
-    let length = norm_up(n);
-    if height > 0.0 {
-        length * (2.0 - MORE) * (2.0 - MORE)
-    } else {
-        length
     }
 }
 
@@ -202,14 +231,4 @@ fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
         }
     }
     best
-}
-
-/// No point in a cell that is reached during part of a stretch is farther than this from the tip.
-pub(crate) fn lever(run: &Run, cell: &Cell, ends: &[Placement; 2], travel: f64) -> f64 {
-    let middle = scaled(&add(&ends[0].tip, &ends[1].tip), 0.5);
-    let far = norm_up(&sub(&middle, &cell.centre)) + 3_f64.sqrt() * cell.half * MORE;
-    let far = far + travel + ends[0].tip_error + ends[1].tip_error;
-    run.body
-        .reach
-        .min(far * MORE + 1e-12 * crate::vector::size(&cell.centre))
 }

@@ -1,25 +1,27 @@
-//! Checks certificates that no cutter of a program goes too deep into a target.
+//! Checks certificates of what was proven of a CNC program.
 //!
-//! [`Certificate::read`] takes the text of a certificate, and [`check`] compares it with a [`Scene`]: target,
-//! tools and paths as plain numbers. It shares no code with the prover, and rounds all bounds outwards. The
-//! crate's README has the statement, the format, and where each step is proven.
+//! [`Certificate::read`] takes the text of a certificate, and [`check`] compares its claims with a [`Scene`]: solids,
+//! tools and paths as plain numbers, and what is asked. It shares no code with the prover, and rounds all bounds
+//! outwards. The crate's README has the statements, the format, and where each step is proven.
 
 mod cell;
 mod certificate;
 mod check;
+mod height;
 mod leaf;
 mod motion;
+mod patch;
 mod scene;
-mod solid;
 mod surface;
-mod tree;
+#[cfg(test)]
+mod tests;
+mod tool;
 mod vector;
 mod walk;
 
-pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, TreePart, Witness, digest_of, trees};
+pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, Tree, Witness, digest_of, packed};
 pub use check::{Checked, check};
-pub use scene::{Curve, Move, Outline, Path, Piece, Scene};
-pub use solid::{Solid, SolidArc};
+pub use scene::{Course, Curve, Measure, Motion, Outline, Plane, Question, Scene, Triangle};
 pub use walk::Failed;
 
 /// The README's example is tested.

@@ -5,9 +5,9 @@
 //! ray from the point that meets no edge, it is the number of triangles through which the ray leaves, less that of
 //! those through which it enters. The target is where it is not 0 or less: its boundary is on the triangles.
 
+use crate::scene::Triangle;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, is_finite, norm, norm_up, scaled, size, sub, unit};
-
-pub(crate) type Triangle = [V3; 3];
+use std::sync::atomic::AtomicUsize;
 
 struct Node {
     low: V3,
@@ -24,6 +24,8 @@ pub(crate) struct Surface {
     nodes: Vec<Node>,
     /// A bound of all coordinates.
     pub size: f64,
+    /// So many cells may still be made.
+    pub cells_left: AtomicUsize,
 }
 
 const LEAF: usize = 4;
@@ -56,6 +58,7 @@ impl Surface {
             order: (0..triangles.len() as u32).collect(),
             nodes: Vec::new(),
             size: triangles.as_flattened().iter().map(size).fold(0.0, f64::max),
+            cells_left: AtomicUsize::new(4_000_000),
         };
         surface.build(0, triangles.len());
         Ok(surface)
@@ -219,7 +222,7 @@ fn crossing(corners: &Triangle, point: &V3, way: &V3) -> Option<i64> {
 }
 
 /// About the nearest point of a triangle.
-fn nearest_of(corners: &Triangle, point: &V3) -> V3 {
+pub(crate) fn nearest_of(corners: &Triangle, point: &V3) -> V3 {
     let [a, b, c] = corners;
     let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(point, a));
     let normal = cross(&ab, &ac);
@@ -250,25 +253,4 @@ fn apart_down(corners: &Triangle, point: &V3, near: &V3) -> f64 {
         dot_down(&way, &off) - EPS * (size(corner) + size(point)) * 4.0
     });
     (beyond.fold(f64::INFINITY, f64::min) / norm_up(&way)).max(0.0) * (2.0 - MORE)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_tetrahedron_has_an_inside() {
-        let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let triangles = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]];
-        let surface = Surface::new(&triangles).expect("closed");
-        assert_eq!(surface.is_outside(&[0.1, 0.1, 0.1]), Some(false));
-        assert_eq!(surface.is_outside(&[0.5, 0.5, 0.5]), Some(true));
-        assert_eq!(surface.is_outside(&[-0.1, 0.1, 0.1]), Some(true));
-        let (distance, near) = surface.nearest(&[0.1, 0.2, 0.3]);
-        assert!(distance <= 0.1 && distance > 0.1 - 1e-14 && near == [0.0, 0.2, 0.3]);
-        assert!(Surface::new(&triangles[1..]).is_err());
-        // Inside out: nothing is inside.
-        let surface = Surface::new(&triangles.map(|[a, b, c]| [a, c, b])).expect("closed");
-        assert_eq!(surface.is_outside(&[0.1, 0.1, 0.1]), Some(true));
-    }
 }

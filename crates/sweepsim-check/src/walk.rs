@@ -1,32 +1,29 @@
 //! Follows the trees of a certificate, and looks at each leaf.
 //!
-//! A tree is about some moves of a path and one of the convex solids that cover its tool. Its root is all of
-//! these moves and the cube around the target. A division of time is into both halves, of the list of pieces or
-//! of one; one of the cell is into its eight parts, without those that the box of what is swept misses. So the
-//! leaves cover all times, and all of the cube, and nothing of the target is outside of it.
+//! A tree is about some motions of a path and one of the convex solids that cover what moves. Its root is all of these
+//! motions and the cube around the solid. A division of time is into both halves, of the list of motions or of one; one
+//! of the cell is into its eight parts, without those that the box of what is swept misses. So the leaves cover all
+//! times, and all of the cube, and nothing of the solid is outside of it.
 
-use crate::cell::{Budget, Cell, NoCell};
-use crate::leaf::{During, Near, lever};
+use crate::cell::Cell;
+use crate::leaf::{During, Near};
 use crate::motion::Run;
 use crate::surface::Surface;
-use crate::tree::{Reader, Tree};
-use crate::vector::{V3, cross, sub, unit};
+use crate::vector::{MORE, V3, add, cross, norm_up, scaled, size, sub, unit};
 
-/// Some moves of a path, or a part of one of their pieces.
+/// Some motions of a path, or a part of one.
 #[derive(Clone, Copy)]
 enum When {
     Node(usize),
     Part { stretch: usize, times: [f64; 2] },
 }
 
-/// A leaf of a tree that does not hold.
+/// A leaf that does not hold.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Failed {
-    /// The path.
-    pub path: usize,
-    /// The move, from 0.
-    pub number: usize,
+    /// The path and the move; of heights, nothing.
+    pub place: Option<(usize, usize)>,
     /// Lower corner of the cell.
     pub low: [f64; 3],
     /// Upper corner of the cell.
@@ -36,7 +33,7 @@ pub struct Failed {
 }
 
 /// What a walk has found.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Found {
     pub nodes: usize,
     /// The largest bound of all leaves that are bounded.
@@ -48,15 +45,72 @@ pub(crate) struct Found {
 /// As many failures are described.
 const MOST_FAILED: usize = 20;
 /// Nothing is divided more often.
-const DEEPEST: usize = 200;
+pub(crate) const DEEPEST: usize = 200;
 /// Pieces are not divided farther in time.
 const SHORTEST: f64 = 1e-12;
 
+impl Found {
+    pub fn nothing() -> Self {
+        Self {
+            nodes: 0,
+            bound: f64::NEG_INFINITY,
+            failed: Vec::new(),
+            failed_count: 0,
+        }
+    }
+
+    pub fn fail(&mut self, place: Option<(usize, usize)>, [low, high]: [V3; 2], why: &'static str) {
+        self.failed_count += 1;
+        if self.failed.len() < MOST_FAILED {
+            self.failed.push(Failed { place, low, high, why });
+        }
+    }
+
+    pub fn join(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.bound = self.bound.max(other.bound);
+        self.failed_count += other.failed_count;
+        self.failed.extend(other.failed);
+    }
+}
+
+/// Reads bytes.
+pub(crate) struct Reader<'a>(pub &'a [u8]);
+
+impl<'a> Reader<'a> {
+    pub fn byte(&mut self) -> Option<u8> {
+        self.bytes(1).map(|own| own[0])
+    }
+
+    /// Groups of seven bits, the lowest first.
+    pub fn number(&mut self) -> Option<usize> {
+        let mut number = 0_usize;
+        for shift in (0..35).step_by(7) {
+            let byte = self.byte()?;
+            number |= usize::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    pub fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (own, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(own)
+    }
+
+    pub fn float(&mut self) -> Option<f64> {
+        let bytes = self.bytes(4)?;
+        Some(f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])))
+    }
+}
+
 pub(crate) struct Walk<'a> {
-    pub surface: &'a Surface,
-    pub budget: &'a Budget,
-    pub run: &'a Run<'a>,
-    pub tree: &'a Tree<'a>,
+    surface: &'a Surface,
+    run: &'a Run<'a>,
+    path: usize,
     reader: Reader<'a>,
     normals: Vec<V3>,
     /// No leaf may be deeper.
@@ -67,22 +121,18 @@ pub(crate) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    pub fn new(
-        (surface, budget): (&'a Surface, &'a Budget),
-        run: &'a Run<'a>,
-        tree: &'a Tree<'a>,
-        (most, more): (f64, f64),
-    ) -> Self {
+    /// `most`: no leaf may be deeper; `more`: is added to all bounds.
+    pub fn new(surface: &'a Surface, run: &'a Run<'a>, path: usize, bytes: &'a [u8], [most, more]: [f64; 2]) -> Self {
+        let (reader, normals, found) = (Reader(bytes), Vec::new(), Found::nothing());
         Self {
             surface,
-            budget,
             run,
-            tree,
-            reader: Reader(tree.bytes),
-            normals: Vec::new(),
+            path,
+            reader,
+            normals,
             most,
             more,
-            found: Found::default(),
+            found,
         }
     }
 
@@ -109,50 +159,33 @@ impl<'a> Walk<'a> {
                 }
             }
             1 => {
-                let mask = self.reader.byte()?;
-                for octant in 0..8 {
-                    if mask >> octant & 1 == 1 {
-                        match cell.child(octant, self.surface, self.budget) {
-                            Ok(child) => self.node(child, when, depth + 1)?,
-                            Err(NoCell::TooMany) => {
-                                self.fail(cell, when, "more cells than are looked at");
-                                return None;
-                            }
-                            Err(NoCell::TooSmall) => {
-                                self.fail(cell, when, "a cell is too small");
-                                return None;
-                            }
-                        }
-                    } else {
-                        let missed = |node: usize| {
-                            let centre = cell.centre_of_child(octant)?;
-                            Some(self.run.nodes[node].misses(&centre, 0.5 * cell.half))
-                        };
-                        let is_missed = matches!(when, When::Node(node) if missed(node) == Some(true));
-                        if !is_missed {
-                            self.fail(cell, when, "a part of a cell is left out");
+                let reached = self.reader.byte()?;
+                let far = (self.more - self.most).max(0.0);
+                let missed = |centre: V3| matches!(when, When::Node(k) if self.run.nodes[k].misses(&centre, 0.5 * cell.half, far));
+                let left_out = (0..8).filter(|octant| reached >> octant & 1 == 0);
+                if !{ left_out }.all(|octant| cell.centre_of_child(octant).is_some_and(missed)) {
+                    self.fail(cell, when, "a part of a cell is left out");
+                }
+                for octant in (0..8).filter(|octant| reached >> octant & 1 == 1) {
+                    match cell.child(octant, self.surface) {
+                        Ok(child) => self.node(child, when, depth + 1)?,
+                        Err(why) => {
+                            self.fail(cell, when, why);
+                            return None;
                         }
                     }
                 }
             }
             kind => {
-                let normals = match kind {
-                    2..=4 => 0,
-                    5..=7 => 1,
-                    8 | 10 => 2,
-                    9 => 3,
-                    _ => return None,
-                };
-                let normals: Vec<V3> = (0..normals).map(|_| self.normal()).collect::<Option<_>>()?;
+                let count = *NORMALS.get(usize::from(kind))?;
+                let normals: Vec<V3> = (0..count).map(|_| self.normal()).collect::<Option<_>>()?;
                 match self.bound(cell, when, kind, &normals) {
                     None => self.fail(cell, when, REASONS[usize::from(kind)]),
-                    // Nothing of the solid is in the target here.
-                    Some(f64::NEG_INFINITY) => {}
                     Some(bound) => {
-                        let bound = (bound + self.more).max(0.0);
+                        let bound = bound + self.more;
                         self.found.bound = self.found.bound.max(bound);
                         if !(bound <= self.most) {
-                            self.fail(cell, when, "may be deeper");
+                            self.fail(cell, when, "may be deeper, or nearer");
                         }
                     }
                 }
@@ -180,11 +213,7 @@ impl<'a> Walk<'a> {
 
     fn normal(&mut self) -> Option<V3> {
         let normal = match self.reader.number()? {
-            0 => {
-                let bytes = self.reader.bytes(12)?;
-                let number = |k: usize| f32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]);
-                unit(&[0, 4, 8].map(|k| f64::from(number(k))))?
-            }
+            0 => unit(&[self.reader.float()?, self.reader.float()?, self.reader.float()?])?,
             1 => {
                 let number = self.reader.number()?;
                 let [a, b, c] = self.surface.triangles.get(number)?;
@@ -198,75 +227,72 @@ impl<'a> Walk<'a> {
 
     /// No point is deeper, as far as the leaf says.
     fn bound(&self, cell: &Cell, when: When, kind: u8, normals: &[V3]) -> Option<f64> {
-        // Whatever is said of it: nothing of the target is in the cell.
-        if cell.is_clear() {
+        // Whatever is said of it: nothing of the target is in the cell, or of its surface.
+        let (is_clear, is_outside) = cell.is_clear();
+        if is_outside || is_clear && self.most < 0.0 {
             return Some(f64::NEG_INFINITY);
         }
-        if kind == 4 {
+        if kind == 4 && self.most >= 0.0 {
             let depth = cell.depth_by_middle(self.surface);
-            return depth.is_finite().then_some(depth);
+            return depth.is_finite().then_some(depth.max(0.0));
         }
         let during = match when {
             When::Node(number) => During::Node(&self.run.nodes[number]),
             When::Part { stretch, times } => {
                 let own = &self.run.stretches[stretch];
                 let (ends, duration) = (times.map(|t| own.at(t)), times[1] - times[0]);
-                let lever = lever(self.run, cell, &ends, own.travel(duration));
+                // No point in the cell that is reached is farther from the tip; of distances, none of the solid.
+                let middle = scaled(&add(&ends[0].tip, &ends[1].tip), 0.5);
+                let far = norm_up(&sub(&middle, &cell.centre)) + 3_f64.sqrt() * cell.half * MORE;
+                let far = far + own.travel(duration) + ends[0].tip_error + ends[1].tip_error;
+                let far = if self.most < 0.0 {
+                    f64::INFINITY
+                } else {
+                    far * MORE + 1e-12 * size(&cell.centre)
+                };
+                let bend = own.bend(self.run.body.reach.min(far), duration);
                 During::Part {
                     ends,
                     still: own.keeps_axis(),
-                    bend: own.bend(lever, duration),
+                    bend,
                 }
             }
         };
-        let near = Near {
-            run: self.run,
+        let (run, surface, most) = (self.run, self.surface, self.most - self.more);
+        Near {
+            run,
             during,
             cell,
-            surface: self.surface,
-        };
-        let nothing = |is_empty: bool| is_empty.then_some(f64::NEG_INFINITY);
-        match (kind, normals) {
-            (2, _) => nothing(near.missed()),
-            // Said to be clear, and not.
-            (3, _) => None,
-            (5, [n]) => nothing(near.separated(n)),
-            (6, [n]) => near.lifted(n, true),
-            (7, [n]) => near.lifted(n, false),
-            (8 | 9, _) => near.lifted_above(normals),
-            (10, [n, m]) => near.slab(n, m),
-            _ => None,
+            surface,
+            most,
         }
+        .bound(kind, normals)
     }
 
     fn fail(&mut self, cell: &Cell, when: When, why: &'static str) {
-        self.found.failed_count += 1;
-        if self.found.failed.len() == MOST_FAILED {
-            return;
-        }
-        let (stretch, _) = match when {
-            When::Node(node) => (self.run.nodes[node].first, 0.0),
-            When::Part { stretch, times } => (stretch, times[0]),
+        let stretch = match when {
+            When::Node(node) => self.run.nodes[node].first,
+            When::Part { stretch, .. } => stretch,
         };
-        self.found.failed.push(Failed {
-            path: self.tree.path,
-            number: self.run.stretches[stretch].number,
-            low: cell.centre.map(|c| c - cell.half),
-            high: cell.centre.map(|c| c + cell.half),
+        let place = (self.path, self.run.stretches[stretch].number);
+        self.found.fail(
+            Some(place),
+            [-1.0, 1.0].map(|side| cell.centre.map(|c| c + side * cell.half)),
             why,
-        });
+        );
     }
 }
 
-/// What is said of a leaf that does not hold, by its kind.
-const REASONS: [&str; 11] = [
+/// How many normals a leaf has, by its kind.
+const NORMALS: [usize; 10] = [0, 0, 0, 0, 0, 1, 1, 2, 3, 2];
+/// What is said of a leaf that does not hold.
+const REASONS: [&str; 10] = [
     "",
     "",
     "the swept box does not miss the cell",
     "the cell may be near the surface, or inside",
     "the depth of the middle is not known",
     "no plane separates the solid from the cell",
-    "the cell is not lifted out",
     "the solid is not lifted out",
     "the solid is not lifted above both planes",
     "the solid is not lifted above the planes",

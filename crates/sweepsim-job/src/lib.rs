@@ -72,6 +72,7 @@ pub use run::{Merge, Outcome, PlaneSection, ShardPiece, Written};
 pub use session::{Guess, Plan};
 pub use shards::ShardNumber;
 pub use sweepsim::Monitor;
+pub use sweepsim_check::Measure;
 pub use sweepsim_dexel as dexel;
 pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Statement, StatementState, Verdict};
 pub use sweepsim_motion as motion;

@@ -1,179 +1,77 @@
 //! A proof and what it is about, as the plain numbers that a checker takes.
 
-use crate::search::{Cutter, Enclosed, Limits, Piece};
+use crate::excess::Left;
+use crate::search::{Closest, Cutter, Enclosed, Piece, TOGETHER, Tree};
 use crate::solid::Target;
-use crate::tool::Convex;
 use nalgebra::Vector3;
-use std::collections::BTreeMap;
-use sweepsim_check::{
-    Claim, Curve, Move, Outline, Path, Piece as PlainPiece, Scene, Solid, SolidArc, TreePart, Witness, trees,
-};
-use sweepsim_dexel::TriangleSoup;
-use sweepsim_motion::{MeridianShape, Pose, Segment, Tool};
+use sweepsim_check::{Claim, Course, Curve, Motion, Outline, Question, Scene, Witness, packed};
+use sweepsim_motion::{MeridianCurve, MeridianShape, Segment, Tool};
 
-/// Target, tools and paths of a statement as plain numbers. `cutters`: each with the number of its tool.
+/// The outline of a tool; of one without, the points in whose hull it is, turned about the axis.
 #[must_use]
-pub fn scene<'a>(
-    target: &TriangleSoup,
-    tools: impl IntoIterator<Item = (u32, &'a Tool)>,
-    cutters: &[(u32, Cutter)],
-    limits: &Limits,
-) -> Scene {
-    let mut scene = Scene::default();
-    scene.triangles.clone_from(&target.triangles);
-    scene.tools = tools
-        .into_iter()
-        .map(|(number, tool)| (number, outline(tool)))
-        .collect();
-    scene.paths = cutters
-        .iter()
-        .map(|(tool, cutter)| path(*tool, cutter, limits))
-        .collect();
-    scene.deviation = limits.deviation();
-    scene
-}
-
-/// What was [recorded](crate::deepest_recorded) of a proof, as a claim: nothing if it was too much.
-///
-/// `cutters`: each with the number of its tool.
-#[must_use]
-pub fn claim(target: &Target, cutters: &[(u32, Cutter)], limits: &Limits, found: &Enclosed) -> Option<Claim> {
-    if found.trees.iter().any(|tree| tree.bytes.is_empty()) {
-        return None;
-    }
-    let tools: BTreeMap<u32, Vec<Solid>> = cutters
-        .iter()
-        .map(|(tool, cutter)| (*tool, cutter.solids.iter().map(solid).collect()))
-        .collect();
-    let part = |(path, number): (usize, usize)| {
-        let tree = found
-            .trees
-            .iter()
-            .find(|tree| tree.path == path && tree.moves.contains(&number));
-        tree.map(|tree| [tree.moves.start, tree.moves.len()])
-    };
-    let witness = match &found.deepest {
-        None => None,
-        Some((path, witness)) => Some(Witness {
-            path: *path,
-            number: witness.number,
-            moves: part((*path, witness.number))?,
-            piece: witness.piece,
-            place: witness.place,
-        }),
-    };
-    Some(Claim {
-        about: "gouge".to_owned(),
-        limit: limits.depth,
-        enclosure: [witness.as_ref().map_or(0.0, |_| known(found)), found.bound],
-        witness,
-        root: target.root(),
-        tools,
-        trees: trees(found.trees.iter().map(|tree| TreePart {
-            path: tree.path,
-            moves: [tree.moves.start, tree.moves.len()],
-            solid: tree.solid,
-            bytes: &tree.bytes,
-        })),
-    })
-}
-
-fn known(found: &Enclosed) -> f64 {
-    found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth)
-}
-
-fn solid(convex: &Convex) -> Solid {
-    let arc = |(centre, radius, normals)| SolidArc {
-        centre,
-        radius,
-        normals,
-    };
-    Solid {
-        corners: convex.corners().to_vec(),
-        arcs: convex.arcs().map(arc).collect(),
-    }
-}
-
-fn outline(tool: &Tool) -> Outline {
-    let curve = |curve: sweepsim_motion::MeridianCurve| match curve.shape {
-        MeridianShape::Line => Curve::Line([curve.from, curve.to]),
+pub fn outline(tool: &Tool) -> Outline {
+    let curve = |curve: MeridianCurve| match curve.shape {
+        MeridianShape::Line => Curve::Bezier([curve.from, curve.to].map(|end| (end, 1.0)).to_vec()),
         MeridianShape::Arc {
             centre,
             radius,
             start,
             sweep,
         } => Curve::Arc {
-            ends: [curve.from, curve.to],
             centre,
             radius,
-            start,
-            sweep,
+            angles: [start, start + sweep],
         },
         _ => Curve::Bezier(curve.controls),
     };
     let curves: Vec<Curve> = tool.meridians().into_iter().map(curve).collect();
-    let points = if curves.is_empty() {
-        around_axis(tool)
-    } else {
-        Vec::new()
-    };
-    Outline { curves, points }
-}
-
-/// The control points of a tool's patches, `(ρ, ζ)`.
-fn around_axis(tool: &Tool) -> Vec<[f64; 2]> {
+    if !curves.is_empty() {
+        return curves;
+    }
     let mut points = Vec::new();
     for patch in tool.patches() {
         for (i, weight) in patch.weight().coefficients().iter().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
-            points.push([x.hypot(y), z]);
+            points.push(([x.hypot(y), z], 1.0));
         }
     }
-    points
+    vec![Curve::Bezier(points)]
 }
 
-/// Paths are looked at in parts of so many moves.
-const TOGETHER: usize = 64;
-
-fn path(tool: u32, cutter: &Cutter, limits: &Limits) -> Path {
-    let plain = |pose: &Pose| [pose.tip(), pose.axis()];
-    let poses: Vec<_> = cutter.path.poses_in_order(0).map(|pose| plain(&pose)).collect();
+/// The motions of a path, in the order in which proofs look at them.
+#[must_use]
+pub fn motions(cutter: &Cutter, deviation: f64) -> Vec<Motion> {
     let count = cutter.path.moves();
-    let own = Cutter {
-        others: None,
-        ..*cutter
-    };
-    let mut moves = Vec::with_capacity(count);
+    let mut all = Vec::with_capacity(count);
     for first in (0..count).step_by(TOGETHER) {
-        let pieces = own.pieces(first..count.min(first + TOGETHER), limits.deviation());
-        for pieces in pieces.chunk_by(|a, b| a.number == b.number) {
-            moves.push(motion(pieces, &poses[moves.len()], &poses[moves.len() + 1]));
-        }
+        let pieces = cutter.pieces(first..count.min(first + TOGETHER), deviation);
+        all.extend(pieces.iter().map(|piece| Motion {
+            number: piece.number,
+            possible: piece.is_other,
+            course: course(piece),
+        }));
     }
-    let others = cutter.others.iter().flat_map(|others| others.of(0..count));
-    Path {
-        tool,
-        poses,
-        moves,
-        others: others
-            .map(|other| (other.number, other.path.poses().iter().map(plain).collect()))
-            .collect(),
-    }
+    all
 }
 
-/// A move: linear, if its only piece is.
-fn motion(pieces: &[Piece], from: &[[f64; 3]; 2], to: &[[f64; 3]; 2]) -> Move {
-    if let [piece] = pieces
-        && is_linear(&piece.segment, from, to)
-    {
-        return Move::Linear;
+/// A linear motion, if it is one but for rounding.
+fn course(piece: &Piece) -> Course {
+    let segment = &piece.segment;
+    let [from, to] = segment.tips();
+    let axis = |k: usize| (segment.turns()[k].column(2) / segment.weights()[k]).into();
+    let ends = [[from, axis(0)], [to, axis(segment.weights().len() - 1)]];
+    if is_linear(segment, &ends) {
+        return Course::Linear(ends);
     }
-    Move::Pieces(pieces.iter().map(|piece| plain(&piece.segment)).collect())
+    let (points, weights) = segment.points();
+    let tips = points.into_iter().map(Into::into).zip(weights).collect();
+    let axes = segment.turns().iter().map(|turn| turn.column(2).into_owned().into());
+    Course::Rational([tips, axes.zip(segment.weights().iter().copied()).collect()])
 }
 
-/// Whether a piece is the linear move between two poses, but for rounding.
-fn is_linear(segment: &Segment, from: &[[f64; 3]; 2], to: &[[f64; 3]; 2]) -> bool {
-    let [a, b] = [from[1], to[1]].map(Vector3::from);
+/// Whether a segment is the linear motion between its ends, but for rounding.
+fn is_linear(segment: &Segment, ends: &[[[f64; 3]; 2]; 2]) -> bool {
+    let [a, b] = ends.map(|end| Vector3::from(end[1]));
     let Some(middle) = (a + b).try_normalize(1.0) else {
         return false;
     };
@@ -187,19 +85,135 @@ fn is_linear(segment: &Segment, from: &[[f64; 3]; 2], to: &[[f64; 3]; 2]) -> boo
         }
         _ => false,
     };
-    segment.is_arc() && segment.tips() == [from[0], to[0]] && turns
+    segment.is_arc() && turns && a.dot(&b) > 0.0
 }
 
-fn plain(segment: &Segment) -> PlainPiece {
-    let (points, tip_weights) = segment.points();
-    PlainPiece {
-        tips: points.into_iter().map(Into::into).collect(),
-        tip_weights,
-        axes: segment
-            .turns()
-            .iter()
-            .map(|turn| turn.column(2).into_owned().into())
-            .collect(),
-        axis_weights: segment.weights().to_vec(),
-    }
+/// The cutters that answer a question, each with the number of its path.
+type Answering<'a> = &'a [(usize, Cutter<'a>)];
+
+/// For each mover of a question: its cutter, the first of its solids there, and how the outline is cut.
+fn movers(scene: &Scene, question: &Question, cutters: Answering) -> Option<Vec<(usize, usize, Vec<[usize; 2]>)>> {
+    let mut taken = vec![0; cutters.len()];
+    let one = |(path, outline): &(usize, usize)| {
+        let number = cutters.iter().position(|(own, _)| own == path)?;
+        let solids = cutters[number].1.solids;
+        let (first, mut curves, mut cover) = (taken[number], 0, Vec::new());
+        while curves < scene.outlines[*outline].len() {
+            let [count, parts] = solids.get(taken[number])?.cut();
+            curves += count;
+            taken[number] += parts;
+            cover.push([count, parts]);
+        }
+        Some((number, first, cover))
+    };
+    question.movers.iter().map(one).collect()
+}
+
+/// Trees in the numbers of a question; nothing if one of them was too large.
+fn trees(
+    scene: &Scene,
+    question: &Question,
+    cutters: Answering,
+    all: &[Tree],
+) -> Option<(Vec<Vec<[usize; 2]>>, Vec<sweepsim_check::Tree>)> {
+    let movers = movers(scene, question, cutters)?;
+    let one = |tree: &Tree| {
+        let own = |(cutter, first, _): &(usize, usize, _)| *cutter == tree.path && *first <= tree.solid;
+        let mover = movers.iter().rposition(own)?;
+        let path = &scene.paths[question.movers[mover].0];
+        let [first, last] = [tree.moves.start, tree.moves.end].map(|number| first_motion(path, number));
+        (!tree.bytes.is_empty()).then(|| sweepsim_check::Tree {
+            mover,
+            solid: tree.solid - movers[mover].1,
+            first,
+            count: last - first,
+            bytes: packed(&tree.bytes),
+        })
+    };
+    let trees = all.iter().map(one).collect::<Option<_>>()?;
+    Some((movers.into_iter().map(|(_, _, cover)| cover).collect(), trees))
+}
+
+/// The first motion of a part of the work that begins with a move.
+fn first_motion(path: &[Motion], number: usize) -> usize {
+    path.partition_point(|motion| motion.number < number)
+}
+
+/// An answer to a question about depths: nothing if it was not recorded, or too much.
+#[must_use]
+pub fn depth_claim(
+    scene: &Scene,
+    question: &Question,
+    target: &Target,
+    cutters: Answering,
+    found: &Enclosed,
+) -> Option<Claim> {
+    let (covers, trees) = trees(scene, question, cutters, &found.trees)?;
+    let witness = match &found.deepest {
+        None => None,
+        Some((number, witness)) => {
+            let (path, _) = cutters[*number];
+            let first = first_motion(&scene.paths[path], witness.number / TOGETHER * TOGETHER);
+            let is_own = |(own, _): &(usize, usize)| *own == path;
+            question.movers.iter().any(is_own).then(|| Witness {
+                path,
+                motion: first + witness.piece.0,
+                time: witness.piece.1,
+                place: witness.place,
+                depth: witness.depth,
+            })
+        }
+    };
+    Some(Claim {
+        about: question.about.clone(),
+        bound: found.bound,
+        witness,
+        root: target.root(),
+        covers,
+        trees,
+    })
+}
+
+/// An answer to a question about distances, which are depths of less than 0.
+#[must_use]
+pub fn distance_claim(
+    scene: &Scene,
+    question: &Question,
+    target: &Target,
+    bodies: Answering,
+    found: &Closest,
+) -> Option<Claim> {
+    let (covers, trees) = trees(scene, question, bodies, &found.trees)?;
+    (found.bound > 0.0 && found.bound.is_finite()).then(|| Claim {
+        about: question.about.clone(),
+        bound: -found.bound,
+        witness: None,
+        root: target.root(),
+        covers,
+        trees,
+    })
+}
+
+/// An answer to a question about heights.
+#[must_use]
+pub fn height_claim(scene: &Scene, question: &Question, cutters: Answering, left: &Left) -> Option<Claim> {
+    let covers = movers(scene, question, cutters)?
+        .into_iter()
+        .map(|(_, _, cover)| cover)
+        .collect();
+    let tree = |(first, count, bytes): &(usize, usize, Vec<u8>)| sweepsim_check::Tree {
+        mover: 0,
+        solid: 0,
+        first: *first,
+        count: *count,
+        bytes: packed(bytes),
+    };
+    (left.bound.is_finite() && !left.trees.is_empty()).then(|| Claim {
+        about: question.about.clone(),
+        bound: left.bound,
+        witness: None,
+        root: ([0.0; 3], 0.0),
+        covers,
+        trees: left.trees.iter().map(tree).collect(),
+    })
 }

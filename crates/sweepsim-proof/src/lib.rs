@@ -15,10 +15,10 @@ mod solid;
 mod statement;
 mod tool;
 
-pub use certificate::{claim, scene};
-pub use excess::{Left, highest};
+pub use certificate::{depth_claim, distance_claim, height_claim, motions, outline};
+pub use excess::{Left, PatchTrees, highest, margin, regions};
 pub use process::{Movers, Room, Touched, Work, touched};
-pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest, deepest_recorded};
+pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

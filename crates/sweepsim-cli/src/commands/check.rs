@@ -4,7 +4,7 @@ use crate::arguments::CheckOptions;
 use crate::session::{Failure, Lines};
 use std::process::ExitCode;
 use std::time::Instant;
-use sweepsim_job::{CheckedCertificate, CheckedStatement, words};
+use sweepsim_job::{CheckedCertificate, CheckedStatement, Measure, words};
 
 /// As many places are named.
 const NAMED: usize = 5;
@@ -29,45 +29,91 @@ fn summary(found: &CheckedCertificate, seconds: f64) -> Lines {
     let mut lines = Lines::default();
     for statement in &found.statements {
         lines.line("check", &verdict(statement));
-        let [least, most] = statement.enclosure.map(words::measure);
+        let Some((bound, known)) = statement.claimed else {
+            continue;
+        };
+        lines.line("stated", &stated(statement, bound, known));
         let checked = &statement.checked;
-        lines.line("stated", &format!("largest depth between {least} and {most} mm"));
         let nodes = words::counted(checked.nodes as u64, "node");
-        let bound = words::measure(checked.bound);
-        lines.line(
-            "recomputed",
-            &format!("at most {bound} mm, {nodes} of the proof, in {seconds:.2} s"),
-        );
-        for wrong in &checked.wrong {
+        lines.line("recomputed", &format!("{nodes} of the proof"));
+        if let Some(wrong) = &checked.wrong {
             lines.line("wrong", wrong);
         }
         for failed in checked.failed.iter().take(NAMED) {
             let middle = [0, 1, 2].map(|k| 0.5 * (failed.low[k] + failed.high[k]));
-            let place = words::point(middle);
-            let (path, number, why) = (failed.path, failed.number, failed.why);
-            lines.line("open", &format!("path {path}, move {number}, at {place}: {why}"));
+            let (place, why) = (words::point(middle), failed.why);
+            let moved = failed
+                .place
+                .map(|(path, number)| format!("path {path}, move {number}, "));
+            lines.line("open", &format!("{}at {place}: {why}", moved.unwrap_or_default()));
         }
         if checked.failed_count > NAMED {
             lines.line("", &format!("… and {} more", checked.failed_count - NAMED));
         }
     }
     lines.line("made by", &format!("{}, for {}", found.made_by, found.input.display()));
+    lines.line("time", &format!("{seconds:.2} s"));
     lines
+}
+
+/// What the certificate says.
+fn stated(statement: &CheckedStatement, bound: f64, known: Option<f64>) -> String {
+    let least = known.map(|known| format!(", at least {} mm", words::measure(known)));
+    let most = words::measure(bound.abs());
+    match statement.measure {
+        Measure::Height => format!("height of at most {most} mm"),
+        _ if bound < 0.0 => format!("distance of at least {most} mm"),
+        _ => format!("depth of at most {most} mm{}", least.unwrap_or_default()),
+    }
+}
+
+/// What a statement says, and what is against it.
+fn said(statement: &CheckedStatement) -> [String; 2] {
+    let limit = words::measure(statement.limit.abs());
+    let into = if statement.about == "fixture" {
+        "a fixture"
+    } else {
+        "the target"
+    };
+    match statement.about.as_str() {
+        "gouge" => [
+            format!("no cutter goes deeper into the target than {limit} mm"),
+            format!("a cutter goes deeper into the target than {limit} mm"),
+        ],
+        "excess" => [
+            format!("nothing that hangs together with the target stands higher above it than {limit} mm"),
+            format!("something stands higher above the target than {limit} mm"),
+        ],
+        _ if statement.limit < 0.0 => [
+            format!("no shank or holder comes nearer to {into} than {limit} mm"),
+            format!("a shank or holder comes nearer to {into} than {limit} mm"),
+        ],
+        "holder" => [
+            format!("no shank or holder goes deeper into the target than {limit} mm"),
+            format!("a shank or holder goes deeper into the target than {limit} mm"),
+        ],
+        _ => [
+            format!("nothing goes deeper into a fixture than {limit} mm"),
+            format!("something goes deeper into a fixture than {limit} mm"),
+        ],
+    }
 }
 
 /// The first line.
 fn verdict(statement: &CheckedStatement) -> String {
-    let limit = words::measure(statement.limit);
+    let [holds, breaks] = said(statement);
     let checked = &statement.checked;
-    let [least, _] = statement.enclosure;
+    let known = statement.claimed.and_then(|(_, known)| known);
     if statement.holds() {
-        format!("proven: no cutter goes deeper into the target than {limit} mm")
+        format!("proven: {holds}")
+    } else if statement.claimed.is_none() {
+        format!("not proven: the certificate has no proof that {holds}")
     } else if !checked.is_proven() {
-        let leaves = checked.failed_count + checked.wrong.len();
-        format!("not proven ({})", words::counted(leaves as u64, "place"))
-    } else if least > statement.limit {
-        format!("not proven: a cutter goes deeper into the target than {limit} mm, as the certificate says")
+        let places = checked.failed_count as u64 + u64::from(checked.wrong.is_some());
+        format!("not proven ({}): {holds}", words::counted(places, "place"))
+    } else if known.is_some_and(|known| known > statement.limit) {
+        format!("not proven: {breaks}, as the certificate says")
     } else {
-        format!("not proven: the certificate leaves open whether a cutter goes deeper than {limit} mm")
+        format!("not proven: the certificate leaves open whether {breaks}")
     }
 }

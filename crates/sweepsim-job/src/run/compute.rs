@@ -28,7 +28,7 @@ pub(super) struct Computed {
     /// What each move does, if asked for.
     pub moves: Vec<MoveSummary>,
     /// What was proven, for a checker.
-    pub certified: Vec<Certified>,
+    pub certified: Option<Certified>,
 }
 
 impl Computed {
@@ -43,7 +43,7 @@ impl Computed {
             aside: Vec::new(),
             target: None,
             moves: Vec::new(),
-            certified: Vec::new(),
+            certified: None,
         }
     }
 }

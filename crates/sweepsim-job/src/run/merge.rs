@@ -110,6 +110,6 @@ pub(super) fn gathered(session: Session, pieces: Pieces, report: &mut Report) ->
         aside,
         target: None,
         moves: Vec::new(),
-        certified: Vec::new(),
+        certified: None,
     })
 }

@@ -138,7 +138,7 @@ impl Outcome {
     /// # Errors
     /// [`JobError`]: a file of the request cannot be read any more.
     pub fn certificate(&self) -> Result<Option<String>, JobError> {
-        verify::text(&self.plan, &self.done.certified)
+        verify::text(&self.plan, self.done.certified.as_ref())
     }
 
     /// The surface of the part, with sharp edges.

@@ -1,45 +1,30 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
-use super::asked::Asked;
+use super::asked::AskedAll;
+use super::proof::Certified;
 use crate::base::JobError;
 use crate::request::{Input, Request};
 use crate::session::Plan;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use sweepsim_check::{Certificate, Checked, Claim, FileDigest, digest_of};
-use sweepsim_formats::{Job, io_reason};
-use sweepsim_proof::{Enclosed, Target, claim};
+use sweepsim_check::{Certificate, Checked, Claim, FileDigest, Measure, Question, digest_of};
+use sweepsim_formats::io_reason;
 
 /// Larger files are no certificates.
 const MOST_BYTES: u64 = 1 << 31;
 
-/// A statement that was proven, and the digest of what it is about.
-#[derive(Clone, Debug)]
-pub(crate) struct Certified {
-    claim: Claim,
-    scene: String,
-}
-
-impl Certified {
-    pub(super) fn new(job: &Job, target: &Target, asked: &Asked, found: &Enclosed) -> Option<Self> {
-        let claim = claim(target, &asked.cutters(job), &asked.limits, found)?;
-        let scene = asked.scene(job)?.digest();
-        Some(Self { claim, scene })
-    }
-}
-
 /// The text of a certificate. `None` if there is nothing to certify, or the request has no notation.
-pub(crate) fn text(plan: &Plan, certified: &[Certified]) -> Result<Option<String>, JobError> {
-    let Some(first) = certified.first() else {
+pub(crate) fn text(plan: &Plan, certified: Option<&Certified>) -> Result<Option<String>, JobError> {
+    let Some(certified) = certified else {
         return Ok(None);
     };
     // Solids that are given in code have no notation.
     let Ok(request) = serde_json::to_value(&plan.request) else {
         return Ok(None);
     };
-    let claims = certified.iter().map(|own| own.claim.clone()).collect();
     let made_by = format!("sweepsim {}", env!("CARGO_PKG_VERSION"));
-    let certificate = Certificate::new(made_by, request, digests(plan)?, first.scene.clone(), claims);
+    let Certified { scene, claims } = certified.clone();
+    let certificate = Certificate::new(made_by, request, digests(plan)?, scene, claims);
     let text = certificate.written();
     Ok(Some(text.map_err(|error| {
         JobError::run(format!("cannot make the certificate: {error}"))
@@ -102,16 +87,18 @@ pub struct CheckedCertificate {
     pub statements: Vec<CheckedStatement>,
 }
 
-/// What a checker says of a statement.
+/// What a checker says of an answer to a question.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct CheckedStatement {
-    /// `gouge`.
+    /// What was asked: `gouge`, `excess`, `holder` or `fixture`; of fixtures, there is a question for each solid.
     pub about: String,
-    /// The limit.
+    /// What was measured.
+    pub measure: Measure,
+    /// What is measured should be no more. It is less than 0 of distances, as the bound is.
     pub limit: f64,
-    /// The enclosure that is stated.
-    pub enclosure: [f64; 2],
+    /// The bound that is claimed, and what is attained at a witness; none where nothing can be checked.
+    pub claimed: Option<(f64, Option<f64>)>,
     /// What was found.
     pub checked: Checked,
 }
@@ -120,7 +107,7 @@ impl CheckedStatement {
     /// Whether it is proven that nothing goes beyond the limit.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.checked.is_proven() && self.enclosure[1] <= self.limit
+        self.checked.is_proven() && self.claimed.is_some_and(|(bound, _)| bound <= self.limit)
     }
 }
 
@@ -146,7 +133,7 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
         request,
         files,
         scene,
-        statement,
+        claims,
         ..
     } = certificate;
     let request: Request = serde_json::from_value(request)
@@ -162,29 +149,25 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
     if let Some(changed) = files.iter().find(|stated| !is_there(stated)) {
         return Err(other(format!("{} has changed, or is not there", changed.file)));
     }
-    let asked = Asked::new(&plan.job);
-    let own = asked
-        .scene(&plan.job)
-        .ok_or_else(|| other("there is no target".into()))?;
-    if own.digest() != scene {
-        return Err(other("target, tools or paths are others".into()));
+    let own = AskedAll::new(&plan.job, &plan.request).scene();
+    if own.digest() != scene || own.questions.len() != claims.len() {
+        return Err(other("targets, tools, paths, fixtures or limits are others".into()));
     }
-    if let Some(claim) = statement.iter().find(|claim| claim.limit != asked.limits.depth) {
-        return Err(other(format!(
-            "the limit is {} mm, in the certificate {} mm",
-            asked.limits.depth, claim.limit
-        )));
-    }
-    let checked = |claim: Claim| CheckedStatement {
-        checked: sweepsim_check::check(&own, &claim, threads),
-        about: claim.about,
-        limit: claim.limit,
-        enclosure: claim.enclosure,
+    let checked = |(question, claim): (&Question, Option<Claim>)| CheckedStatement {
+        about: question.about.clone(),
+        measure: question.measure,
+        limit: question.limit,
+        claimed: claim
+            .as_ref()
+            .map(|claim| (claim.bound, claim.witness.as_ref().map(|witness| witness.depth))),
+        checked: claim.map_or_else(Checked::default, |claim| {
+            sweepsim_check::check(&own, question, &claim, threads)
+        }),
     };
     Ok(CheckedCertificate {
         made_by,
         input,
-        statements: statement.into_iter().map(checked).collect(),
+        statements: own.questions.iter().zip(claims).map(checked).collect(),
     })
 }
 

@@ -1,6 +1,6 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
-use super::certificate::Certified;
+use super::proof::Certified;
 use super::texts::{ProgramTexts, name_of};
 use super::{axes, proof, targets, work};
 use crate::base::JobError;
@@ -13,7 +13,7 @@ pub(super) fn describe(
     session: Session,
     done: &Judgement,
     found: Option<&Deviations>,
-) -> Result<Vec<Certified>, JobError> {
+) -> Result<Option<Certified>, JobError> {
     let job = session.job;
     let mut texts = ProgramTexts::new(session);
     let mut findings: Vec<ReportedFinding> = done
@@ -22,7 +22,7 @@ pub(super) fn describe(
         .map(|finding| reported(finding, job, &mut texts))
         .collect();
     findings.extend(axes::findings(job, report, &mut texts));
-    let (mut statements, mut certified) = (Vec::new(), Vec::new());
+    let (mut statements, mut certified) = (Vec::new(), None);
     if session.request.judging.proof && !done.stopped {
         let regions = found.iter().flat_map(|found| &found.regions);
         let is_left = { regions }.any(|region| region.kind == DeviationKind::Excess);

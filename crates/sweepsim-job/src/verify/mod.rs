@@ -13,8 +13,9 @@ pub(crate) mod targets;
 mod texts;
 mod work;
 
-pub(crate) use certificate::{Certified, text};
+pub(crate) use certificate::text;
 pub use certificate::{CheckedCertificate, CheckedStatement, check};
+pub(crate) use proof::Certified;
 pub(crate) use work::setups;
 
 use crate::base::{JobError, words};
@@ -42,7 +43,7 @@ pub(crate) struct Verified {
     /// What each move does, if asked for.
     pub moves: Vec<MoveSummary>,
     /// What was proven, for a checker.
-    pub certified: Vec<Certified>,
+    pub certified: Option<Certified>,
 }
 
 /// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the

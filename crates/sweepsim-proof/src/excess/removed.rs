@@ -1,18 +1,46 @@
 //! What the cutters of a program have removed, as far as it is certain.
 
-use crate::motion::{Placement, Run, Stretch};
+use crate::motion::{Boxes, Placement, Stretch};
 use crate::tool::{Convex, Level};
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 /// A cutter all along its path.
 pub(crate) struct Course<'a> {
+    pub stretches: &'a [Stretch],
     /// Each solid that covers the cutter; a part of it only if it is exact.
-    pub solids: Vec<(Run<'a>, Level)>,
+    pub solids: Vec<CourseSolid<'a>>,
+}
+
+/// One of the solids that cover a cutter.
+pub(crate) struct CourseSolid<'a> {
+    pub convex: &'a Convex,
+    pub level: Level,
+    pub boxes: Boxes,
 }
 
 /// Of some points, which are held.
 pub(super) type Held = SmallVec<[bool; 12]>;
+
+/// What holds some points: a cutter, one of its solids, a stretch of its path, and a time in it, which does not count on
+/// a straight one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Holder {
+    pub course: usize,
+    pub solid: usize,
+    pub stretch: usize,
+    pub time: Option<f32>,
+}
+
+/// What is known of some points.
+pub(super) struct Known {
+    /// Which of them were removed by one and the same solid.
+    pub held: Held,
+    /// It, if it holds all of them.
+    pub holder: Option<Holder>,
+    /// Whether the middle was removed.
+    pub is_removed: bool,
+}
 
 /// As many stretches are tried for a patch, those deepest around its middle.
 const TRIED: usize = 3;
@@ -30,35 +58,49 @@ struct Candidate<'a> {
     level: f64,
     /// The least comes first: where a point is, and the axis is near. Over a floor many are as deep.
     order: f64,
-    solid: &'a (Run<'a>, Level),
+    level_of: &'a Level,
     stretch: &'a Stretch,
     time: f64,
+    numbers: [usize; 3],
 }
 
 impl<'a> Course<'a> {
     pub fn new(solids: &'a [Convex], stretches: &'a [Stretch], rounding: f64) -> Self {
-        let of = |solid: &'a Convex| (Run::new(solid, stretches, rounding), Level::new(solid));
-        Self {
-            solids: solids.iter().map(of).collect(),
-        }
+        let of = |convex: &'a Convex| CourseSolid {
+            convex,
+            level: Level::new(convex),
+            boxes: Boxes::new(convex, stretches, rounding),
+        };
+        let solids = solids.iter().map(of).collect();
+        Self { stretches, solids }
     }
 
     /// The stretches of exact solids which may hold some points: their boxes may.
-    fn candidates(&'a self, points: &[Vector3<f64>], middle: &Vector3<f64>, all: &mut Vec<Candidate<'a>>) {
+    fn candidates(
+        &'a self,
+        course: usize,
+        points: &[Vector3<f64>],
+        middle: &Vector3<f64>,
+        all: &mut Vec<Candidate<'a>>,
+    ) {
         let (mut low, mut high) = (points[0], points[0]);
         for point in points {
             (low, high) = (low.inf(point), high.sup(point));
         }
-        for solid in self.solids.iter().filter(|(run, _)| run.solid.is_exact()) {
-            let (run, level) = solid;
-            run.around(&low, &high, &mut |stretch| {
-                let (value, time) = quick(level, stretch, middle);
+        for (number, solid) in self.solids.iter().enumerate() {
+            if !solid.convex.is_exact() {
+                continue;
+            }
+            solid.boxes.around(&low, &high, &mut |own| {
+                let stretch = &self.stretches[own];
+                let (value, time) = quick(&solid.level, stretch, middle);
                 all.push(Candidate {
                     level: value,
                     order: value + AXIS * from_axis(&stretch.at(time), middle),
-                    solid,
+                    level_of: &solid.level,
                     stretch,
                     time,
+                    numbers: [course, number, own],
                 });
                 true
             });
@@ -67,11 +109,11 @@ impl<'a> Course<'a> {
 
     /// Whether no cutter holds the point at any time, for certain.
     fn misses(&self, point: &Vector3<f64>, margin: f64) -> bool {
-        self.solids.iter().all(|(run, level)| {
-            run.around(point, point, &mut |stretch| {
-                stays_away(level, (stretch, 1.0), point, margin)
-            })
-        })
+        let misses = |solid: &CourseSolid| {
+            let mut away = |own: usize| stays_away(&solid.level, (&self.stretches[own], 1.0), point, margin);
+            solid.boxes.around(point, point, &mut away)
+        };
+        self.solids.iter().all(misses)
     }
 }
 
@@ -84,41 +126,60 @@ pub(super) struct Removed<'a> {
 
 impl Removed<'_> {
     /// Which of some points were certainly removed by one and the same convex solid: if all of them, so was their hull.
-    /// `middle`: a point among them, around which the solid is chosen; and whether it was removed itself.
-    pub fn held(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> (Held, bool) {
+    /// `middle`: a point among them, around which the solid is chosen.
+    pub fn held(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Known {
         let mut all = Vec::new();
-        for course in &self.courses {
-            course.candidates(points, middle, &mut all);
+        for (number, course) in self.courses.iter().enumerate() {
+            course.candidates(number, points, middle, &mut all);
         }
-        let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order);
+        let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order).then(a.numbers.cmp(&b.numbers));
         if all.len() > TRIED {
             all.select_nth_unstable_by(TRIED, in_order);
             all.truncate(TRIED);
         }
         all.sort_by(in_order);
-        let is_removed = all.iter().any(|own| own.level <= -self.margin);
-        let mut held = all.iter().map(|candidate| self.held_by(points, candidate));
-        let Some(first) = held.next().filter(|held| held.contains(&true)) else {
-            return (points.iter().map(|_| false).collect(), is_removed);
+        let mut known = Known {
+            held: points.iter().map(|_| false).collect(),
+            holder: None,
+            is_removed: all.iter().any(|own| own.level <= -self.margin),
         };
-        let is_whole = |held: &Held| !held.contains(&false);
-        if is_whole(&first) {
-            return (first, true);
+        for (number, candidate) in all.iter().enumerate() {
+            let (held, time) = self.held_by(points, candidate);
+            let is_whole = !held.contains(&false);
+            if number == 0 || is_whole {
+                known.held = held;
+            }
+            if is_whole {
+                let [course, solid, stretch] = candidate.numbers;
+                known.holder = Some(Holder {
+                    course,
+                    solid,
+                    stretch,
+                    time,
+                });
+                known.is_removed = true;
+            }
+            if is_whole || !known.held.contains(&true) {
+                break;
+            }
         }
-        (held.find(is_whole).unwrap_or(first), is_removed)
+        known
     }
 
-    fn held_by(&self, points: &[Vector3<f64>], candidate: &Candidate) -> Held {
-        let (_, level) = candidate.solid;
-        let stretch = candidate.stretch;
+    /// Which of some points a solid holds, and when, if it is not straight.
+    fn held_by(&self, points: &[Vector3<f64>], candidate: &Candidate) -> (Held, Option<f32>) {
+        let (level, stretch) = (candidate.level_of, candidate.stretch);
         if stretch.is_straight() {
             // The solid sweeps a convex one.
             let own = points.iter();
-            own.map(|point| is_inside(level, stretch, point, self.margin)).collect()
+            let held = own.map(|point| is_inside(level, stretch, point, self.margin));
+            (held.collect(), None)
         } else {
-            let at = stretch.at(best_time(level, stretch, points, candidate.time));
+            let time = best_time(level, stretch, points, candidate.time) as f32;
+            let at = stretch.at(f64::from(time).min(1.0));
             let own = points.iter();
-            own.map(|point| level_at(level, &at, point) <= -self.margin).collect()
+            let held = own.map(|point| level_at(level, &at, point) <= -self.margin);
+            (held.collect(), Some(time.min(1.0)))
         }
     }
 

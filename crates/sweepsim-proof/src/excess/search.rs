@@ -1,13 +1,14 @@
 //! The search for the highest place that is left standing.
 
-use super::removed::{Course, Removed};
+use super::record::{PatchTrees, Record, Step, key, parts, trees};
+use super::removed::{Course, Known, Removed};
 use super::stock::Before;
-use super::surface::Patch;
+use super::surface::{Halved, Patch};
 use crate::search::{Cutter, Limits};
 use crate::solid::Target;
-use crate::tool::Convex;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{MeshError, Stock};
 use sweepsim_solve::Monitor;
@@ -25,6 +26,8 @@ pub struct Left {
     pub open_count: usize,
     /// Patches that were looked at.
     pub patches: usize,
+    /// How the bound was proven, if that was to be recorded.
+    pub trees: Vec<PatchTrees>,
 }
 
 /// As many distances are tried.
@@ -45,12 +48,23 @@ const FINEST: f64 = 1e-3;
 const MOST_OPEN: usize = 4;
 /// Coordinates of this size are exact to 1.
 const ROUNDING: f64 = 1e-12;
+/// What a checker's margin is in parts of all lengths, without deviations.
+const MARGIN: f64 = 1e-8;
 /// Higher places are looked for where they are higher by this part of the wanted width.
 const FINER: f64 = 0.1;
 /// How far a place is that is left is known this well.
 const STEPS: usize = 24;
 
-/// Encloses how far what is left of a stock stands beyond a target. `None` if the monitor cancelled the work.
+/// A checker takes points for removed, or for outside of the stock, that are so by this. What is proven here is so by
+/// twice as much: roundings, and what motions deviate by, do not matter.
+#[must_use]
+pub fn margin(size: f64, cutters: &[Cutter], limits: &Limits) -> f64 {
+    let reach = cutters.iter().map(|cutter| cutter.reach).fold(0.0, f64::max);
+    limits.deviation + MARGIN * (size + reach + limits.depth)
+}
+
+/// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can follow
+/// the proof. `None` if the monitor cancelled the work.
 ///
 /// # Errors
 /// The stock has too many vertices.
@@ -59,58 +73,47 @@ pub fn highest(
     stock: &Stock,
     cutters: &[Cutter],
     limits: &Limits,
+    recorded: bool,
     monitor: &dyn Monitor,
 ) -> Result<Option<Left>, MeshError> {
     let mut size = target.size;
     let mut motions = Vec::with_capacity(cutters.len());
     for cutter in cutters {
-        let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
         // Other courses of rapids are only possible.
         let own = Cutter {
             others: None,
             ..*cutter
         };
-        let all = own.stretches(0..cutter.path.moves(), limits.deviation());
+        let all = own.stretches(0..cutter.path.moves(), limits.deviation);
         let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
-        size = far.fold(size, f64::max) + reach;
+        size = far.fold(size, f64::max) + cutter.reach;
         motions.push(all);
     }
     let courses = cutters.iter().zip(&motions);
+    let margin = 2.0 * margin(target.size, cutters, limits) + ROUNDING * size;
     let removed = Removed {
         courses: courses
             .map(|(cutter, all)| Course::new(cutter.solids, all, ROUNDING * size))
             .collect(),
-        margin: limits.deviation() + ROUNDING * size,
+        margin,
     };
+    let surface = Patch::around(&target.triangles);
+    let total: f64 = surface.iter().flatten().map(|patch| patch.length().powi(2)).sum();
+    let largest = (total / PARTS).sqrt();
+    let (patches, steps) = parts(surface, |patch| patch.length() > largest);
+    let triangles = target.triangles.iter();
+    let numbers = triangles.map(|own| (key(&own.corners.map(Into::into)), own.number));
     let scene = Scene {
         target,
-        before: Before::new(stock, 2.0 * removed.margin)?,
+        before: Before::new(stock, margin)?,
         removed,
-        patches: parts(Patch::around(&target.triangles)),
+        patches,
+        steps,
+        numbers: if recorded { numbers.collect() } else { HashMap::new() },
+        // Without some of the triangles, the patches are not those of a checker.
+        recorded: recorded && target.is_whole,
     };
     Ok(scene.search(limits, monitor))
-}
-
-/// Patches, the large ones divided.
-fn parts(patches: Vec<Patch>) -> Vec<Patch> {
-    let length = |patch: &Patch| {
-        let pairs = patch.corners.iter().enumerate();
-        let pairs = pairs.flat_map(|(k, a)| patch.corners[..k].iter().map(move |b| (a - b).norm()));
-        pairs.fold(0.0, f64::max)
-    };
-    let total: f64 = patches.iter().map(|patch| length(patch).powi(2)).sum();
-    let largest = (total / PARTS).sqrt();
-    let (mut open, mut all) = (patches, Vec::new());
-    while let Some(patch) = open.pop() {
-        match patch
-            .halves(0.0, f64::MIN_POSITIVE, &[])
-            .filter(|_| length(&patch) > largest)
-        {
-            Some(halves) => open.extend(halves),
-            None => all.push(patch),
-        }
-    }
-    all
 }
 
 struct Scene<'a> {
@@ -118,6 +121,11 @@ struct Scene<'a> {
     before: Before,
     removed: Removed<'a>,
     patches: Vec<Patch>,
+    /// How the patches make up the surface.
+    steps: Vec<Step>,
+    /// The numbers of triangles by their corners, for records.
+    numbers: HashMap<[u64; 9], u32>,
+    recorded: bool,
 }
 
 /// What was found of a distance.
@@ -129,6 +137,7 @@ struct Found {
     open: Vec<[[f64; 3]; 2]>,
     open_count: usize,
     patches: usize,
+    record: Record,
 }
 
 impl Found {
@@ -162,17 +171,23 @@ impl Scene<'_> {
             open: Vec::new(),
             open_count: 0,
             patches: 0,
+            trees: Vec::new(),
         };
         let mut distance = limits.width;
         for _ in 0..ROUNDS {
             let spent = limits.pairs.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
-            let found = self.at_distance(distance, (known, limits.width), spent, monitor)?;
+            let all = self.at_distance(distance, (known, limits.width), spent, monitor)?;
+            let is_done = all.iter().all(|found| !found.is_left && found.open_count == 0);
+            if is_done && self.recorded {
+                let records: Vec<&Record> = all.iter().map(|found| &found.record).collect();
+                left.trees = trees(&self.steps, &records);
+            }
+            let found = all.into_iter().fold(Found::default(), Found::join);
             left.patches += found.patches;
             if let Some((place, height)) = found.highest.filter(|(_, height)| *height > known) {
                 left.highest = Some((place.into(), height));
             }
-            let is_done = !found.is_left && found.open_count == 0;
             (left.open, left.open_count) = (found.open, found.open_count);
             if is_done {
                 left.bound = distance;
@@ -206,7 +221,7 @@ impl Scene<'_> {
         (mut known, width): (f64, f64),
         patches: usize,
         monitor: &dyn Monitor,
-    ) -> Option<Found> {
+    ) -> Option<Vec<Found>> {
         let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
         // Short looks everywhere, then what is left.
@@ -236,7 +251,7 @@ impl Scene<'_> {
                 break;
             }
         }
-        Some(found.into_iter().fold(Found::default(), Found::join))
+        Some(found)
     }
 
     /// Looks at some patches, `each` of them in so many parts.
@@ -293,25 +308,34 @@ impl Search<'_> {
     fn look(&mut self, patch: Patch, most: usize) {
         let mut open = vec![patch];
         while let Some(patch) = open.pop() {
-            let Some((points, middle)) = patch.points(self.distance) else {
+            let Some((whole, middle)) = patch.points(self.distance) else {
                 match patch.halves(self.distance, 0.0, &[]) {
-                    Some(halves) => open.extend(halves),
+                    Some(halves) => self.halve(halves, &mut open),
                     None => self.leave(&patch.corners),
                 }
                 continue;
             };
             self.found.patches += 1;
             let scene = self.scene;
-            let count = points.len();
-            let points = scene.before.within(points, &middle, &patch.middle().1);
+            let points = scene.before.within(&whole, &middle);
             if points.is_empty() {
+                self.record(Record::outside);
                 continue;
             }
-            let (mut held, is_removed) = scene.removed.held(&points, &middle);
-            if !held.contains(&false) || self.is_near(&points, &middle) {
+            let Known {
+                mut held,
+                holder,
+                is_removed,
+            } = scene.removed.held(&points, &middle);
+            if let Some(holder) = holder {
+                self.record(|record| record.removed(holder));
                 continue;
             }
-            if points.len() != count {
+            if let Some(corners) = self.near(&whole, &middle) {
+                self.record(|record| record.near(scene.numbers.get(&key(&corners)).copied().unwrap_or(u32::MAX)));
+                continue;
+            }
+            if points.len() != whole.len() {
                 held.clear();
             }
             if !is_removed && scene.is_left(&middle) {
@@ -325,20 +349,33 @@ impl Search<'_> {
                 }
             }
             match patch.halves(self.distance, FINEST * self.distance, &held) {
-                Some(halves) if self.found.patches < most => open.extend(halves),
+                Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
                 _ => self.leave(&points),
             }
         }
     }
 
-    /// Whether the hull of some points is nearer to a triangle than the distance.
-    fn is_near(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> bool {
-        let triangle = self.scene.target.distance.nearest_triangle((*middle).into());
+    fn halve(&mut self, (halved, [first, second]): (Halved, [Patch; 2]), open: &mut Vec<Patch>) {
+        self.record(|record| record.halved(halved));
+        open.extend([second, first]);
+    }
+
+    fn record(&mut self, write: impl FnOnce(&mut Record)) {
+        // What is not finished is of no use.
+        if self.scene.recorded && self.found.open_count == 0 && !self.found.is_left {
+            write(&mut self.found.record);
+        } else {
+            self.found.record.clear();
+        }
+    }
+
+    /// The triangle to which the hull of some points is nearer than the distance.
+    fn near(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<[[f64; 3]; 3]> {
+        let triangle = self.scene.target.distance.nearest_triangle((*middle).into())?;
         let least = self.distance - self.scene.removed.margin;
-        triangle.is_some_and(|triangle| {
-            let all = points.iter().map(|point| triangle.distance_of((*point).into()));
-            triangle.distance < least && { all }.all(|distance| distance < least)
-        })
+        let mut all = points.iter().map(|point| triangle.distance_of((*point).into()));
+        let is_near = triangle.distance < least && all.all(|distance| distance < least);
+        is_near.then_some(triangle.corners)
     }
 
     /// Looks how far what is left reaches, above a place where something is left.

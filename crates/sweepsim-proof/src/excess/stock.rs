@@ -8,8 +8,89 @@ use sweepsim_dexel::{DistanceTo, MeshError, Stock};
 /// A stock, prepared for what is asked of it here: without its skin, so that what ends on its surface is beside it.
 pub(crate) struct Before {
     shape: Shape,
-    /// How thick the skin is: far below any tolerance.
-    skin: f64,
+    outer: Vec<Outer>,
+    margin: f64,
+}
+
+/// Something that a stock is within.
+enum Outer {
+    /// The points with `⟨n, x⟩ ≤ c` for all of some unit vectors `n`.
+    Planes(Vec<(Vector3<f64>, f64)>),
+    Mesh(DistanceTo),
+}
+
+/// A cylinder is between so many planes, and a ball between as many in each of half as many turns.
+const SIDES: usize = 720;
+const SIDES_OF_BALL: usize = 64;
+/// Regions are cut at so many of their planes.
+const CUT: usize = 6;
+
+/// Convex regions that hold a stock, by the unit normals `n` of planes and the largest `⟨n, x⟩`. `None` of a mesh. `skin`:
+/// they are smaller by that.
+#[must_use]
+pub fn regions(stock: &Stock, skin: f64) -> Option<Vec<Vec<([f64; 3], f64)>>> {
+    let region = |outer: Outer| match outer {
+        Outer::Planes(planes) => Some(planes.into_iter().map(|(n, c)| (n.into(), c)).collect()),
+        Outer::Mesh(_) => None,
+    };
+    outer(stock, skin).ok()?.into_iter().map(region).collect()
+}
+
+fn outer(stock: &Stock, skin: f64) -> Result<Vec<Outer>, MeshError> {
+    let planes = |all: &mut dyn Iterator<Item = (Vector3<f64>, f64)>| {
+        vec![Outer::Planes(all.map(|(n, c)| (n, c - skin)).collect())]
+    };
+    let between = |low: &[f64; 3], high: &[f64; 3]| {
+        let side = |k: usize, c: f64| {
+            let n = Vector3::ith(k, 1.0);
+            if c > 0.0 { (n, high[k]) } else { (-n, -low[k]) }
+        };
+        planes(&mut (0..3).flat_map(|k| [side(k, 1.0), side(k, -1.0)]))
+    };
+    Ok(match stock {
+        Stock::Block { min, max } => between(min, max),
+        Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height,
+        } => {
+            let (base, axis) = (Vector3::from(*base), Vector3::from(*axis).normalize());
+            let x = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
+            let y = axis.cross(&x);
+            let side = |k: usize| {
+                // Four across each other come first.
+                let angle = std::f64::consts::TAU * (k * (SIDES / 4 + 1) % SIDES) as f64 / SIDES as f64;
+                let n = x * angle.cos() + y * angle.sin();
+                (n, n.dot(&base) + radius)
+            };
+            let ends = [(axis, axis.dot(&base) + height), (-axis, -axis.dot(&base))];
+            planes(&mut ends.into_iter().chain((0..SIDES).map(side)))
+        }
+        Stock::Ball { centre, radius } => {
+            let centre = Vector3::from(*centre);
+            let angle = |k: usize| std::f64::consts::TAU * k as f64 / SIDES_OF_BALL as f64;
+            let turns = (0..=SIDES_OF_BALL / 2).flat_map(|i| (0..SIDES_OF_BALL).map(move |j| (i, j)));
+            let side = |(i, j): (usize, usize)| {
+                let [up, around] = [angle(i), angle(j)];
+                let n = Vector3::new(up.sin() * around.cos(), up.sin() * around.sin(), up.cos());
+                (n, n.dot(&centre) + radius)
+            };
+            planes(&mut turns.map(side))
+        }
+        Stock::Mesh(soup) => vec![Outer::Mesh(DistanceTo::new(soup)?)],
+        Stock::Union(parts) => {
+            let all = parts.iter().map(|part| outer(part, skin));
+            all.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect()
+        }
+        Stock::Intersection(parts) => match parts.first() {
+            Some(first) => outer(first, skin)?,
+            None => Vec::new(),
+        },
+        Stock::Difference(whole, _) => outer(whole, skin)?,
+        // Dexels, which say nothing of what is between them.
+        _ => stock.bounds().map_or(Vec::new(), |[low, high]| between(&low, &high)),
+    })
 }
 
 enum Shape {
@@ -30,24 +111,40 @@ enum Shape {
 }
 
 impl Before {
-    pub fn new(stock: &Stock, skin: f64) -> Result<Self, MeshError> {
-        let shape = Shape::new(stock)?;
-        Ok(Self { shape, skin })
+    /// `margin`: points are beside it if they are so by this. Its skin is three times as thick, so that a cutter that
+    /// reaches its surface holds what is left of it.
+    pub fn new(stock: &Stock, margin: f64) -> Result<Self, MeshError> {
+        Ok(Self {
+            shape: Shape::new(stock)?,
+            outer: outer(stock, 3.0 * margin)?,
+            margin,
+        })
     }
 
-    /// Points whose hull has all of the stock that is in the hull of some points. `middle`: a point among them;
-    /// `normal`: a direction away from the stock, if they are beside it.
-    pub fn within(&self, mut points: Points, middle: &Vector3<f64>, normal: &Vector3<f64>) -> Points {
-        if self.shape.misses(&points, (middle, normal), self.skin) {
-            points.clear();
-        }
-        if let Shape::Block([low, high]) | Shape::Within([low, high]) = &self.shape {
-            for k in 0..3 {
-                points = below(points, |point| point[k] - (high[k] - self.skin));
-                points = below(points, |point| low[k] + self.skin - point[k]);
+    /// Points whose hull has all of the stock that is in the hull of some points. `middle`: a point among them.
+    pub fn within(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Points {
+        let mut all = Points::new();
+        for outer in &self.outer {
+            match outer {
+                Outer::Planes(planes) => {
+                    let above = |(n, c): &(Vector3<f64>, f64), p: &Vector3<f64>| n.dot(p) - (c + self.margin);
+                    if planes.iter().any(|plane| points.iter().all(|p| above(plane, p) > 0.0)) {
+                        continue;
+                    }
+                    let cut = |points: Points, plane| below(points, |p| above(plane, p));
+                    all.extend(planes.iter().take(CUT).fold(points.iter().copied().collect(), cut));
+                }
+                Outer::Mesh(distance) => {
+                    let size = points.iter().map(|point| (point - middle).norm());
+                    let size = size.fold(0.0, f64::max);
+                    let nearest = distance.nearest((*middle).into());
+                    if nearest.is_some_and(|near| near.distance + self.margin <= size * (1.0 + 1e-9) + 1e-12) {
+                        all.extend(points.iter().copied());
+                    }
+                }
             }
         }
-        points
+        all
     }
 
     /// Whether the hull of some points is farther from it than a distance, for certain; or, if that is negative, no

@@ -23,17 +23,26 @@ pub(super) struct Patch {
     normals: Vectors,
 }
 
+/// Between which of its corners or normals a patch is halved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Halved {
+    Corners([usize; 2]),
+    Normals([usize; 2]),
+}
+
 /// Normals farther apart are divided before corners are: on one side, a patch may be beyond the stock, on the other be
 /// removed.
 const WIDE: f64 = 0.3;
 /// No patch is made so many times longer than it is wide, on purpose.
 const THIN: f64 = 4096.0;
-/// Normals that differ less are the same, for what a patch is: every test of it has a larger margin.
-const SAME: f64 = 1e-10;
+/// Normals that differ less are the same, for what a patch is: every test of it has a larger margin. A checker takes
+/// twice as much.
+const SAME: f64 = 5e-10;
 
 impl Patch {
-    /// The patches of the surface around a solid.
-    pub fn around(triangles: &[Triangle]) -> Vec<Self> {
+    /// The patches of the surface around a solid: of each triangle, then of its edges with later triangles; at last those
+    /// of all corners. None where nothing is.
+    pub fn around(triangles: &[Triangle]) -> Vec<SmallVec<[Self; 1]>> {
         let mut numbers = HashMap::new();
         let mut places: Vec<Vector3<f64>> = Vec::new();
         let mut faces = Vec::with_capacity(triangles.len());
@@ -46,7 +55,7 @@ impl Patch {
                 })
             }));
         }
-        let mut all: Vec<Self> = Vec::with_capacity(3 * triangles.len());
+        let mut all: Vec<SmallVec<[Self; 1]>> = Vec::with_capacity(3 * triangles.len());
         let mut around: Vec<Vectors> = vec![Vectors::new(); places.len()];
         let mut outwards = vec![false; places.len()];
         // The triangles on the left of each edge, and their corners off the edge.
@@ -58,50 +67,51 @@ impl Patch {
                 around[face[k]].push(triangles[number].normal);
             }
         }
-        for (triangle, face) in triangles.iter().zip(&faces) {
-            all.push(Self {
+        for (number, (triangle, face)) in triangles.iter().zip(&faces).enumerate() {
+            all.push(SmallVec::from([Self {
                 corners: triangle.corners.into_iter().collect(),
                 normals: [triangle.normal].into_iter().collect(),
-            });
+            }]));
             for k in 0..3 {
                 let [a, b] = [face[k], face[(k + 1) % 3]];
-                let mut add = |normal: &Vector3<f64>| {
-                    outwards[a] = true;
-                    outwards[b] = true;
-                    if (normal - triangle.normal).norm() > SAME {
-                        all.push(Self {
-                            corners: [places[a], places[b]].into_iter().collect(),
-                            normals: [triangle.normal, *normal].into_iter().collect(),
-                        });
-                    }
+                let edge = |normal: &Vector3<f64>| Self {
+                    corners: [places[a], places[b]].into_iter().collect(),
+                    normals: [triangle.normal, *normal].into_iter().collect(),
                 };
-                match sides.get(&(b, a)) {
-                    // Edges that two triangles share are looked at once.
-                    Some(others) if a > b && others.len() == 1 => {}
-                    Some(others) => {
-                        for (other, off) in others {
-                            if triangle.normal.dot(&(places[*off] - places[a])) < 0.0 {
-                                add(&triangles[*other].normal);
-                            }
-                        }
-                    }
+                let is_other = |normal: &Vector3<f64>| (normal - triangle.normal).norm() > SAME;
+                let Some(others) = sides.get(&(b, a)) else {
                     // Beyond a triangle without area, which was left out, is one that has a corner in common.
-                    None => around[a].iter().chain(&around[b]).for_each(add),
+                    (outwards[a], outwards[b]) = (true, true);
+                    let normals = around[a].iter().chain(&around[b]).filter(|normal| is_other(normal));
+                    all.extend(normals.map(|normal| SmallVec::from([edge(normal)])));
+                    continue;
+                };
+                for (other, off) in others.iter().filter(|(other, _)| *other > number) {
+                    let (way, off) = (places[b] - places[a], places[*off] - places[a]);
+                    // The sine of the angle by which it turns inwards.
+                    let turn = triangle.normal.dot(&off) * way.norm() / way.cross(&off).norm();
+                    let turns_out = turn < -SAME;
+                    outwards[a] |= turns_out;
+                    outwards[b] |= turns_out;
+                    let own = turns_out.then(|| edge(&triangles[*other].normal));
+                    all.push(own.into_iter().collect());
                 }
             }
         }
         for ((place, normals), outwards) in places.iter().zip(&around).zip(outwards) {
-            if outwards {
-                all.extend(Self::at_corner(place, normals));
-            }
+            all.push(if outwards {
+                Self::at_corner(place, normals)
+            } else {
+                SmallVec::new()
+            });
         }
         all
     }
 
-    fn at_corner(place: &Vector3<f64>, normals: &[Vector3<f64>]) -> Vec<Self> {
+    fn at_corner(place: &Vector3<f64>, normals: &[Vector3<f64>]) -> SmallVec<[Self; 1]> {
         let mut own = Vectors::new();
         for normal in normals {
-            if !own.iter().any(|other| (other - normal).norm() <= SAME) {
+            if !own.iter().any(|other| (other - normal).norm() <= 2.0 * SAME) {
                 own.push(*normal);
             }
         }
@@ -111,16 +121,16 @@ impl Patch {
         };
         match own.len() {
             // Of the edges.
-            0..=2 => Vec::new(),
-            3 => vec![patch(own)],
+            0..=2 => SmallVec::new(),
+            3 => SmallVec::from([patch(own)]),
             _ => {
                 let whole = patch(own);
                 if whole.spread() <= WIDE {
-                    return vec![whole];
+                    return SmallVec::from([whole]);
                 }
                 // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
                 let own = &whole.normals;
-                let mut all = Vec::new();
+                let mut all = SmallVec::new();
                 for i in 0..own.len() {
                     for j in 0..i {
                         for k in 0..j {
@@ -166,6 +176,13 @@ impl Patch {
         Some((points, middle + mean * d))
     }
 
+    /// The largest distance between two of its corners.
+    pub fn length(&self) -> f64 {
+        let pairs = self.corners.iter().enumerate();
+        let pairs = pairs.flat_map(|(k, a)| self.corners[..k].iter().map(move |b| (a - b).norm()));
+        pairs.fold(0.0, f64::max)
+    }
+
     /// The middle of what the patch is of, and a direction.
     pub fn middle(&self) -> (Vector3<f64>, Vector3<f64>) {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;
@@ -175,7 +192,7 @@ impl Patch {
 
     /// Two parts of it, or nothing if it is as small as it should be. `held`: which of its points are held; corners of
     /// which one is and the other is not are parted, so that what is left is thin.
-    pub fn halves(&self, d: f64, least: f64, held: &[bool]) -> Option<[Self; 2]> {
+    pub fn halves(&self, d: f64, least: f64, held: &[bool]) -> Option<(Halved, [Self; 2])> {
         let longest = |vectors: &Vectors| {
             let mut best = (0.0, 0, 0);
             for i in 0..vectors.len() {
@@ -220,11 +237,13 @@ impl Patch {
                 }
             }
             let middle = (self.corners[i] + self.corners[j]) * 0.5;
+            let ends = [i.min(j), i.max(j)];
             return (length > 0.0).then(|| {
-                [i, j].map(|end| Self {
+                let half = |end| Self {
                     corners: replaced(&self.corners, end, middle),
                     normals: self.normals.clone(),
-                })
+                };
+                (Halved::Corners(ends), ends.map(half))
             });
         }
         let middle = (self.normals[k] + self.normals[l]).try_normalize(1e-9);
@@ -233,10 +252,12 @@ impl Patch {
             let axis = Vector3::ith(self.normals[k].iamin(), 1.0);
             self.normals[k].cross(&axis).normalize()
         });
-        Some([k, l].map(|end| Self {
+        let ends = [k.min(l), k.max(l)];
+        let half = |end| Self {
             corners: self.corners.clone(),
             normals: replaced(&self.normals, end, middle),
-        }))
+        };
+        Some((Halved::Normals(ends), ends.map(half)))
     }
 }
 
@@ -250,7 +271,7 @@ mod tests {
     fn has_edge(soup: &TriangleSoup, ends: [[f64; 3]; 2], normals: [[f64; 3]; 2]) -> bool {
         let target = Target::new(soup).expect("closed");
         let (ends, normals) = (ends.map(Vector3::from), normals.map(Vector3::from));
-        Patch::around(&target.triangles).iter().any(|patch| {
+        Patch::around(&target.triangles).iter().flatten().any(|patch| {
             patch.corners.len() == 2
                 && ends.iter().all(|end| patch.corners.contains(end))
                 && normals.iter().all(|normal| patch.normals.contains(normal))

@@ -88,7 +88,7 @@ impl<'a> Run<'a> {
             Node {
                 first,
                 last,
-                swept: self.swept(&stretch.ends, axis, bend + self.slack),
+                swept: swept(self.solid, &stretch.ends, axis, bend + self.slack),
                 tips,
                 axis,
                 bend,
@@ -112,29 +112,8 @@ impl<'a> Run<'a> {
         self.nodes.len() - 1
     }
 
-    /// What is swept between placements, if no point goes farther than `bend` beyond the hull of where it is at these.
-    pub fn swept(&self, ends: &[Placement], axis: Option<Vector3<f64>>, bend: f64) -> Bounds {
-        let mut bounds = Bounds {
-            low: Vector3::zeros(),
-            high: Vector3::zeros(),
-        };
-        for k in 0..3 {
-            let mut direction = Vector3::zeros();
-            direction[k] = 1.0;
-            bounds.high[k] = self.reaches(ends, axis, &direction).0 + bend;
-            bounds.low[k] = -self.reaches(ends, axis, &-direction).0 - bend;
-        }
-        bounds
-    }
-
-    /// Visits the stretches whose swept boxes meet a box, until one of the visits says no; whether none did.
-    pub fn around(&self, low: &Vector3<f64>, high: &Vector3<f64>, visit: &mut dyn FnMut(&'a Stretch) -> bool) -> bool {
-        self.around_first(self.stretches.len(), (low, high), &mut |number| {
-            visit(&self.stretches[number])
-        })
-    }
-
-    /// The same for the first `count` stretches, by their numbers.
+    /// Visits the first `count` stretches whose swept boxes meet a box, by their numbers, until one of the visits says no;
+    /// whether none did.
     pub fn around_first(
         &self,
         count: usize,
@@ -162,24 +141,43 @@ impl<'a> Run<'a> {
 
     /// How far the solid reaches in a direction at some placements, and at which of them. `axis`: of all of them.
     pub fn reaches(&self, ends: &[Placement], axis: Option<Vector3<f64>>, direction: &Vector3<f64>) -> (f64, usize) {
-        let mut best = (f64::NEG_INFINITY, 0);
-        for (number, end) in ends.iter().enumerate() {
-            let own = if axis.is_some() {
-                0.0
-            } else {
-                self.solid.support(direction, &end.axis)
-            };
-            let value = direction.dot(&end.tip) + own;
-            if value > best.0 {
-                best = (value, number);
-            }
-        }
-        best.0 += axis.map_or(0.0, |axis| self.solid.support(direction, &axis));
-        best
+        reaches(self.solid, ends, axis, direction)
     }
 
     /// The point of the solid at a placement that reaches farthest.
     pub fn farthest(&self, end: &Placement, direction: &Vector3<f64>) -> Vector3<f64> {
         end.tip + self.solid.farthest(direction, &end.axis)
     }
+}
+
+/// How far a solid reaches in a direction at some placements, and at which of them.
+fn reaches(solid: &Convex, ends: &[Placement], axis: Option<Vector3<f64>>, direction: &Vector3<f64>) -> (f64, usize) {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (number, end) in ends.iter().enumerate() {
+        let own = if axis.is_some() {
+            0.0
+        } else {
+            solid.support(direction, &end.axis)
+        };
+        let value = direction.dot(&end.tip) + own;
+        if value > best.0 {
+            best = (value, number);
+        }
+    }
+    best.0 += axis.map_or(0.0, |axis| solid.support(direction, &axis));
+    best
+}
+
+/// What a solid sweeps between placements, if no point goes farther than `bend` beyond the hull of where it is at these.
+pub(super) fn swept(solid: &Convex, ends: &[Placement], axis: Option<Vector3<f64>>, bend: f64) -> Bounds {
+    let mut bounds = Bounds {
+        low: Vector3::zeros(),
+        high: Vector3::zeros(),
+    };
+    for k in 0..3 {
+        let direction = Vector3::ith(k, 1.0);
+        bounds.high[k] = reaches(solid, ends, axis, &direction).0 + bend;
+        bounds.low[k] = -reaches(solid, ends, axis, &-direction).0 - bend;
+    }
+    bounds
 }

@@ -1,6 +1,7 @@
 //! A stretch of a motion with bounds on how fast its tip and axis move and bend.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
+use smallvec::SmallVec;
 use sweepsim_motion::Segment;
 
 /// Where the tip is and where the axis points.
@@ -25,7 +26,8 @@ pub(crate) struct Rates {
 /// A segment of a move with what is known of it for all times.
 #[derive(Clone, Debug)]
 pub(crate) struct Stretch {
-    segment: Segment,
+    /// None of a straight one.
+    bent: Option<Box<Bent>>,
     /// The move, and the times in it at which the stretch begins and ends.
     pub number: usize,
     pub times: [f64; 2],
@@ -38,6 +40,16 @@ pub(crate) struct Stretch {
     axis: Rates,
 }
 
+/// A segment, and the Bernstein coefficients of its tip and its axis, each with its weight.
+#[derive(Clone, Debug)]
+struct Bent {
+    segment: Segment,
+    tip: Form,
+    axis: Form,
+}
+
+type Form = SmallVec<[Vector4<f64>; 3]>;
+
 impl Stretch {
     pub fn new(segment: Segment, number: usize, times: [f64; 2]) -> Self {
         let (points, weights) = segment.points();
@@ -45,17 +57,25 @@ impl Stretch {
         let low = control().fold(Vector3::repeat(f64::INFINITY), |low, p| low.inf(&p));
         let high = control().fold(Vector3::repeat(f64::NEG_INFINITY), |high, p| high.sup(&p));
         let axes: Vec<_> = segment.turns().iter().map(|turn| turn.column(2).into_owned()).collect();
-        let (tip, axis) = (rates(&points, &weights), rates(&axes, segment.weights()));
+        let (tip_rates, axis_rates) = (rates(&points, &weights), rates(&axes, segment.weights()));
         let ends = [0.0, 1.0].map(|t| placement(&segment, t));
+        let is_straight = axis_rates.speed <= STILL && tip_rates.bend == 0.0;
         Self {
-            segment,
+            bent: (!is_straight).then(|| {
+                let form = |points: &[Vector3<f64>], weights: &[f64]| {
+                    let all = points.iter().zip(weights);
+                    all.map(|(point, weight)| point.push(*weight)).collect()
+                };
+                let (tip, axis) = (form(&points, &weights), form(&axes, segment.weights()));
+                Box::new(Bent { segment, tip, axis })
+            }),
             ends,
             number,
             times,
             low,
             high,
-            tip,
-            axis,
+            tip: tip_rates,
+            axis: axis_rates,
         }
     }
 
@@ -66,7 +86,7 @@ impl Stretch {
 
     /// Whether the axis stays the same and the tip moves along a line.
     pub fn is_straight(&self) -> bool {
-        self.keeps_axis() && self.tip.bend == 0.0
+        self.bent.is_none()
     }
 
     /// The axis turns by no more than this, in radians.
@@ -76,16 +96,22 @@ impl Stretch {
 
     pub fn at(&self, t: f64) -> Placement {
         let [from, to] = &self.ends;
-        if self.is_straight() {
-            let (tip, axis) = (from.tip + (to.tip - from.tip) * t, from.axis);
-            return Placement { tip, axis };
+        match &self.bent {
+            Some(bent) => Placement {
+                tip: value(&bent.tip, t),
+                axis: value(&bent.axis, t).normalize(),
+            },
+            None => Placement {
+                tip: from.tip + (to.tip - from.tip) * t,
+                axis: from.axis,
+            },
         }
-        placement(&self.segment, t)
     }
 
     /// The time in the move.
     pub fn time(&self, t: f64) -> f64 {
-        self.times[0] + (self.times[1] - self.times[0]) * self.segment.time(t)
+        let own = self.bent.as_ref().map_or(t, |bent| bent.segment.time(t));
+        self.times[0] + (self.times[1] - self.times[0]) * own
     }
 
     /// How far a point within `reach` of the tip may move in a time.
@@ -103,6 +129,18 @@ impl Stretch {
         let turning = self.axis.bend + self.axis.speed * self.axis.speed;
         (self.tip.bend + turning * reach) * duration * duration / 8.0
     }
+}
+
+/// By de Casteljau.
+fn value(form: &Form, t: f64) -> Vector3<f64> {
+    let mut row = form.clone();
+    for left in (1..row.len()).rev() {
+        for k in 0..left {
+            let step = (row[k + 1] - row[k]) * t;
+            row[k] += step;
+        }
+    }
+    row[0].xyz() / row[0].w
 }
 
 fn placement(segment: &Segment, t: f64) -> Placement {

@@ -3,7 +3,7 @@
 use super::ring::Ring;
 use super::samples::Samples;
 use crate::excess::{Before, Course, from_axis, level_at, lowest, narrowed, quick, stays_away};
-use crate::motion::{Placement, Run, Stretch};
+use crate::motion::{Placement, Stretch};
 use crate::tool::Level;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
@@ -40,7 +40,7 @@ const AROUND: f64 = 0.25;
 /// A stretch that was followed up to a time, and how far outside of its solid a point is.
 struct Candidate<'a> {
     order: f64,
-    solid: &'a (Run<'a>, Level),
+    level: &'a Level,
     stretch: &'a Stretch,
     latest: f64,
     time: f64,
@@ -54,17 +54,17 @@ impl History<'_> {
         let middle = samples.middle();
         let (mut all, mut nearest): (Vec<Candidate>, f64) = (Vec::new(), f64::INFINITY);
         for (number, course) in self.courses.iter().enumerate().take(moment.path + 1) {
-            for solid in course.solids.iter().filter(|(run, _)| run.solid.is_exact()) {
-                let (run, level) = solid;
+            for solid in course.solids.iter().filter(|solid| solid.convex.is_exact()) {
+                let level = &solid.level;
                 let count = if number < moment.path {
-                    run.stretches.len()
+                    course.stretches.len()
                 } else {
                     moment.cut + usize::from(moment.during.is_some())
                 };
-                run.around_first(count, (&low, &high), &mut |stretch| {
+                solid.boxes.around_first(count, (&low, &high), &mut |stretch| {
                     let is_own = number == moment.path && stretch == moment.cut;
                     let latest = if is_own { moment.during.unwrap_or(1.0) } else { 1.0 };
-                    let stretch = &run.stretches[stretch];
+                    let stretch = &course.stretches[stretch];
                     let (mut value, mut time) = quick(level, stretch, &middle);
                     if time > latest {
                         (value, time) = (level_at(level, &stretch.at(latest), &middle), latest);
@@ -77,7 +77,7 @@ impl History<'_> {
                     let order = value + AXIS * from_axis(&stretch.at(time), &middle);
                     all.push(Candidate {
                         order,
-                        solid,
+                        level,
                         stretch,
                         latest,
                         time,
@@ -112,18 +112,18 @@ impl History<'_> {
         let (low, high) = (point - off, point + off);
         let until = self.courses.iter().enumerate().take(moment.path + 1);
         { until }.all(|(number, course)| {
-            course.solids.iter().all(|(run, level)| {
+            course.solids.iter().all(|solid| {
                 let count = if number < moment.path {
-                    run.stretches.len()
+                    course.stretches.len()
                 } else {
                     moment.cut + usize::from(moment.during.is_some())
                 };
                 let mut away = |number_of: usize| {
                     let is_own = number == moment.path && number_of == moment.cut;
                     let latest = if is_own { moment.during.unwrap_or(1.0) } else { 1.0 };
-                    stays_away(level, (&run.stretches[number_of], latest), point, distance)
+                    stays_away(&solid.level, (&course.stretches[number_of], latest), point, distance)
                 };
-                run.around_first(count, (&low, &high), &mut away)
+                solid.boxes.around_first(count, (&low, &high), &mut away)
             })
         })
     }
@@ -136,7 +136,7 @@ impl History<'_> {
 
 /// Which rings a solid holds, at some time of its stretch.
 fn held_by(samples: &Samples, candidate: &Candidate, need: f64) -> Held {
-    let (_, level) = candidate.solid;
+    let level = candidate.level;
     let (stretch, latest) = (candidate.stretch, candidate.latest);
     if stretch.is_straight() {
         // The solid sweeps a convex one: each ring at a time of its own.
@@ -165,7 +165,7 @@ fn held_by(samples: &Samples, candidate: &Candidate, need: f64) -> Held {
 
 /// Which rings a solid holds that turns, or whose path bends; `order`: the least at the best time.
 fn moved(samples: &Samples, candidate: &Candidate, need: f64, order: impl Fn(&[Ring], &Placement) -> f64) -> Held {
-    let (_, level) = candidate.solid;
+    let level = candidate.level;
     let (stretch, latest) = (candidate.stretch, candidate.latest);
     let best = |rings: &[Ring]| {
         let of = |time: f64| order(rings, &stretch.at(time));

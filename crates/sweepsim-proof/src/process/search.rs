@@ -152,11 +152,7 @@ impl Cut {
 
 /// Some solids along the path of a cutter, without its other courses.
 fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
-    Cutter {
-        solids,
-        path: cutter.path,
-        others: None,
-    }
+    Cutter::new(solids, cutter.path, None)
 }
 
 pub(super) struct Scene<'a> {

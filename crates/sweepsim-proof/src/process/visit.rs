@@ -193,8 +193,8 @@ impl Search<'_> {
     fn is_in_cutter(&self, part: &Part) -> bool {
         let solids = self.scene.history.courses[self.path].solids.iter();
         let profile = part.profile(self.solid);
-        solids.filter(|(run, _)| run.solid.is_exact()).any(|(_, level)| {
-            let is_inside = |(place, thick): &([f64; 2], f64)| level.at(*place) + thick <= -self.scene.margin;
+        solids.filter(|solid| solid.convex.is_exact()).any(|solid| {
+            let is_inside = |(place, thick): &([f64; 2], f64)| solid.level.at(*place) + thick <= -self.scene.margin;
             profile.iter().all(is_inside)
         })
     }

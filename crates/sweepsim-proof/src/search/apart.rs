@@ -5,7 +5,7 @@
 //! them. The best `n` is found by turning it to where the points that are nearest in its direction differ across it.
 
 use super::reach::During;
-use crate::solid::{Cell, Target};
+use crate::solid::{Cell, Normal, Target};
 use nalgebra::Vector3;
 
 /// Steps of a descent.
@@ -24,32 +24,30 @@ impl Apart<'_> {
         match self.surface {
             Some(target) => self.cell.top(direction, &target.triangles),
             None => {
-                // Of the surroundings, in which the surface is.
-                let corner = direction.map(|c| (2.01 * self.cell.half).copysign(c)) + self.cell.centre;
+                let corner = direction.map(|c| self.cell.half.copysign(c)) + self.cell.centre;
                 (direction.dot(&corner), corner)
             }
         }
     }
 
     /// A bound of the distance between both, and the direction in which it was found; the search ends at `enough`.
-    pub fn distance(&self, enough: f64) -> (f64, Vector3<f64>) {
-        let apart = |normal: &Vector3<f64>| -(self.top(normal).0 + self.during.reach(&-normal));
+    pub fn distance(&self, enough: f64) -> Option<(f64, Normal)> {
+        let apart = |normal: &Normal| -(self.top(&normal.vector).0 + self.during.reach(&-normal.vector));
         let away = self.during.core(&self.cell.centre) - self.cell.centre;
         let axis = self.during.ends[0].axis;
-        let starts = away.try_normalize(1e-12).into_iter().chain([axis, -axis]);
+        let starts = [away, axis, -axis].into_iter().filter_map(|start| Normal::near(&start));
         let best = starts.map(|normal| (apart(&normal), normal));
-        let Some((mut value, mut normal)) = best.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            return (f64::NEG_INFINITY, axis);
-        };
+        let (mut value, mut normal) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let size = self.run_size();
         let mut step = 1.0 / size;
         for _ in 0..STEPS {
             if value >= enough {
                 break;
             }
-            let apart_by = self.top(&normal).1 - self.during.farthest(&-normal).1;
-            let across = apart_by - normal * normal.dot(&apart_by);
-            let Some(turned) = (normal - across * step).try_normalize(1e-9) else {
+            let own = normal.vector;
+            let apart_by = self.top(&own).1 - self.during.farthest(&-own).1;
+            let across = apart_by - own * own.dot(&apart_by);
+            let Some(turned) = Normal::near(&(own - across * step)) else {
                 break;
             };
             let next = apart(&turned);
@@ -60,7 +58,7 @@ impl Apart<'_> {
                 step *= 0.25;
             }
         }
-        (value, normal)
+        Some((value, normal))
     }
 
     fn run_size(&self) -> f64 {

@@ -1,13 +1,11 @@
 //! How near bodies come to a solid, at every time.
 
-use super::gouge::{Cutter, Limits};
+use super::gouge::{Cutter, Limits, Tree, parts, trees};
 use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::Run;
-use crate::solid::Target;
+use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
-use crate::tool::Convex;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
@@ -27,10 +25,10 @@ pub struct Closest {
     pub moves: Vec<(usize, Witness)>,
     /// Pairs of a cell and a time that were looked at.
     pub pairs: usize,
+    /// How the bound was proven, if that was to be recorded.
+    pub trees: Vec<Tree>,
 }
 
-/// So many moves are looked at together.
-const TOGETHER: usize = 64;
 /// At first, every part of the work looks at so many pairs.
 const FIRST_LOOK: usize = 256;
 /// Every part of the work may look at so many pairs.
@@ -39,18 +37,17 @@ const LEAST_PAIRS: usize = 4_000;
 const ROUNDING: f64 = 1e-12;
 
 /// Encloses how near bodies on their paths come to a solid, `limits.depth` being the distance that is asked for. A body
-/// that touches the solid, or is inside of it, has the distance 0. `None` if the monitor cancelled the work.
+/// that touches the solid, or is inside of it, has the distance 0. `recorded`: with a tree for each part of the work, by
+/// which a checker can follow the proof. `None` if the monitor cancelled the work.
 #[must_use]
-pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dyn Monitor) -> Option<Closest> {
-    let parts: Vec<(usize, Range<usize>)> = bodies
-        .iter()
-        .enumerate()
-        .flat_map(|(number, body)| {
-            let moves = body.path.moves();
-            let part = move |first| (number, first..moves.min(first + TOGETHER));
-            (0..moves).step_by(TOGETHER).map(part)
-        })
-        .collect();
+pub fn closest(
+    target: &Target,
+    bodies: &[Cutter],
+    limits: &Limits,
+    recorded: bool,
+    monitor: &dyn Monitor,
+) -> Option<Closest> {
+    let parts = parts(bodies);
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
     let mut known = f64::INFINITY;
@@ -60,16 +57,22 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
             _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
         };
         let (done, total) = (AtomicUsize::new(0), open.len());
-        let again = |number: &usize| {
+        let again = |root: &Cell, number: &usize| {
             if monitor.cancelled() {
                 return None;
             }
             let (path, moves) = &parts[*number];
-            let found = look(target, &bodies[*path], moves.clone(), limits, (pairs, known));
+            let found = look(
+                (target, root),
+                &bodies[*path],
+                moves.clone(),
+                limits,
+                (pairs, known, recorded),
+            );
             monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Some(found)
         };
-        let again: Vec<Found> = open.par_iter().with_max_len(1).map(again).collect::<Option<_>>()?;
+        let again: Vec<Found> = target.each(&open, again)?;
         for (number, again) in open.iter().zip(again) {
             let before = std::mem::replace(&mut found[*number], again);
             found[*number].take(before);
@@ -84,10 +87,12 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
         open_count: 0,
         moves: Vec::new(),
         pairs: 0,
+        trees: Vec::new(),
     };
-    for ((path, _), found) in parts.into_iter().zip(found) {
+    for ((path, moves), found) in parts.into_iter().zip(found) {
         all.bound = all.bound.min(found.bound);
         all.pairs += found.pairs;
+        all.trees.extend(trees(path, moves, found.trees));
         if found.bound < enough(known, limits) {
             all.open_count += found.open_count;
             all.open.extend(found.open.into_iter().map(|open| (path, open)));
@@ -107,9 +112,15 @@ pub fn closest(target: &Target, bodies: &[Cutter], limits: &Limits, monitor: &dy
 }
 
 /// Of some moves of a body. `known`: so near something is.
-fn look(target: &Target, body: &Cutter, moves: Range<usize>, limits: &Limits, (pairs, known): (usize, f64)) -> Found {
-    let reach = body.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-    let stretches = body.stretches(moves, limits.deviation());
+fn look(
+    (target, root): (&Target, &Cell),
+    body: &Cutter,
+    moves: Range<usize>,
+    limits: &Limits,
+    (pairs, known, recorded): (usize, f64, bool),
+) -> Found {
+    let reach = body.reach;
+    let stretches = body.stretches(moves, limits.deviation);
     let far = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
@@ -117,12 +128,13 @@ fn look(target: &Target, body: &Cutter, moves: Range<usize>, limits: &Limits, (p
     let mut all = Found::nothing();
     for solid in body.solids {
         let run = Run::new(solid, &stretches, rounding);
-        let search = Search::new(target, &run, limits, (known, rounding));
+        let search = Search::new((target, root), &run, limits, (known, rounding), recorded);
         let found = search.run(pairs);
         all.bound = all.bound.min(found.bound);
         all.pairs += found.pairs;
         all.open.extend(found.open);
         all.open_count += found.open_count;
+        all.trees.extend(found.trees);
         for witness in found.moves.into_values().chain(found.nearest) {
             all.see(witness, limits.depth);
         }

@@ -40,6 +40,7 @@ const FINE: f64 = 16.0;
 /// The search for how deep a solid goes on a run of stretches.
 pub(super) struct Search<'a> {
     target: &'a Target,
+    root: &'a Cell,
     run: &'a Run<'a>,
     wanted: Wanted,
     found: Found,
@@ -50,9 +51,10 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(target: &'a Target, run: &'a Run<'a>, wanted: Wanted) -> Self {
+    pub fn new((target, root): (&'a Target, &'a Cell), run: &'a Run<'a>, wanted: Wanted) -> Self {
         Self {
             target,
+            root,
             run,
             wanted,
             found: Found::default(),
@@ -66,7 +68,7 @@ impl<'a> Search<'a> {
         let Some(root) = self.run.nodes.len().checked_sub(1) else {
             return self.found;
         };
-        self.push((f64::INFINITY, 0), &self.target.root, When::Node(root));
+        self.push((f64::INFINITY, 0), self.root, When::Node(root));
         while let Some(pair) = self.open.pop() {
             if pair.depth <= self.enough() {
                 // So are all others.
@@ -84,10 +86,8 @@ impl<'a> Search<'a> {
             self.found.pairs += 1;
             self.visit(&pair);
         }
-        if self.wanted.recorded {
-            let tree = self.trace.written(self.found.bound, self.wanted.allowance);
-            self.found.trees.push(tree);
-        }
+        let tree = self.trace.written(self.found.bound, self.wanted.allowance);
+        self.found.trees.extend(tree);
         self.found
     }
 
@@ -277,7 +277,7 @@ impl<'a> Search<'a> {
                 1..=MOST_PIECES => {
                     let (own, way) = child.depth(&target.triangles);
                     let normals = [way.map(|way| way.written), None, None];
-                    self.trace.bound(node, Reason::CellLifted, normals, own);
+                    self.trace.bound(node, Reason::Lifted, normals, own);
                     depth.min(own)
                 }
                 _ => depth,

@@ -3,10 +3,9 @@
 use super::deepest::{SHARE, Search, Wanted};
 use super::found::Found;
 use crate::motion::{Run, Stretch};
-use crate::solid::Target;
+use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_motion::{OtherCourses, Path, Segment};
@@ -21,6 +20,8 @@ pub struct Cutter<'a> {
     pub path: &'a Path,
     /// Other courses that its moves may take.
     pub others: Option<&'a OtherCourses>,
+    /// Its points are no farther from the tip.
+    pub reach: f64,
 }
 
 /// A piece of a path, as a proof takes it: a rational motion.
@@ -32,26 +33,40 @@ pub struct Piece {
     pub times: [f64; 2],
     /// The motion.
     pub segment: Segment,
+    /// Whether it is of another course that the move may take.
+    pub is_other: bool,
 }
 
-impl Cutter<'_> {
+impl<'a> Cutter<'a> {
+    /// Solids on a path.
+    #[must_use]
+    pub fn new(solids: &'a [Convex], path: &'a Path, others: Option<&'a OtherCourses>) -> Self {
+        let reach = solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        Self {
+            solids,
+            path,
+            others,
+            reach,
+        }
+    }
+
     /// The pieces of some moves: first those of the path, then those of other courses.
     ///
-    /// No point of the cutter is farther from where it is on the path than the [deviation](Limits::deviation).
+    /// No point of the cutter is farther from where it is on the path than the deviation.
     #[must_use]
     pub fn pieces(&self, moves: Range<usize>, deviation: f64) -> Vec<Piece> {
-        let reach = self.solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        let reach = self.reach;
         let mut pieces = Vec::with_capacity(moves.len());
         let (path, first) = self.path.unpacked(moves.clone());
         for number in moves.clone() {
             let segments = path.segments_of_symmetric(number - first, reach, deviation);
-            add(&mut pieces, segments, number, [0.0, 1.0]);
+            add(&mut pieces, segments, (number, false), [0.0, 1.0]);
         }
         for other in self.others.iter().flat_map(|others| others.of(moves.clone())) {
             let mut from = 0.0;
             for (k, to) in other.times.iter().enumerate() {
                 let segments = other.path.segments_of_symmetric(k, reach, deviation);
-                add(&mut pieces, segments, other.number, [from, *to]);
+                add(&mut pieces, segments, (other.number, true), [from, *to]);
                 from = *to;
             }
         }
@@ -88,15 +103,25 @@ pub struct Limits {
     pub width: f64,
     /// At most as many pairs of a cell and a time are looked at in the whole request.
     pub pairs: usize,
+    /// How far the [pieces](Cutter::pieces) of a path may be from it.
+    pub deviation: f64,
 }
 
 impl Limits {
-    /// How far the [pieces](Cutter::pieces) of a path may be from it.
+    /// With a deviation that does not matter beside the width.
     #[must_use]
-    pub fn deviation(&self) -> f64 {
-        0.5e-3 * self.width
+    pub const fn new(depth: f64, width: f64, pairs: usize) -> Self {
+        Self {
+            depth,
+            width,
+            pairs,
+            deviation: DEVIATION * width,
+        }
     }
 }
+
+/// What the pieces of a path are off by, in parts of the wanted width.
+const DEVIATION: f64 = 0.5e-3;
 
 /// How deep cutters go: an enclosure, with a witness.
 #[derive(Clone, Debug, Default)]
@@ -113,12 +138,12 @@ pub struct Enclosed {
     pub moves: Vec<(usize, Witness)>,
     /// Pairs of a cell and a time that were looked at.
     pub pairs: usize,
-    /// How the bound was proven, if that was to be [recorded](deepest_recorded).
+    /// How the bound was proven, if that was to be recorded.
     pub trees: Vec<Tree>,
 }
 
 /// So many moves are looked at together.
-const TOGETHER: usize = 64;
+pub(crate) const TOGETHER: usize = 64;
 /// At first, every part of the work looks at so many pairs.
 const FIRST_LOOK: usize = 512;
 /// How deep cutters go that go too deep need not be known better than this, in parts of it.
@@ -128,38 +153,17 @@ const LEAST_PAIRS: usize = 10_000;
 /// Coordinates of this size are exact to 1: some thousand roundings, more than any bound here has.
 const ROUNDING: f64 = 1e-12;
 
-/// Encloses how deep cutters go below the surface of a target. `None` if the monitor cancelled the work.
+/// Encloses how deep cutters go below the surface of a target. `recorded`: with a tree for each part of the work, by
+/// which a checker can follow the proof. `None` if the monitor cancelled the work.
 #[must_use]
-pub fn deepest(target: &Target, cutters: &[Cutter], limits: &Limits, monitor: &dyn Monitor) -> Option<Enclosed> {
-    enclosed(target, cutters, (limits, false), monitor)
-}
-
-/// The same, with a tree for each part of the work, by which a checker can follow the proof.
-#[must_use]
-pub fn deepest_recorded(
+pub fn deepest(
     target: &Target,
     cutters: &[Cutter],
     limits: &Limits,
+    recorded: bool,
     monitor: &dyn Monitor,
 ) -> Option<Enclosed> {
-    enclosed(target, cutters, (limits, true), monitor)
-}
-
-fn enclosed(
-    target: &Target,
-    cutters: &[Cutter],
-    (limits, recorded): (&Limits, bool),
-    monitor: &dyn Monitor,
-) -> Option<Enclosed> {
-    let parts: Vec<(usize, Range<usize>)> = cutters
-        .iter()
-        .enumerate()
-        .flat_map(|(number, cutter)| {
-            let moves = cutter.path.moves();
-            let part = move |first| (number, first..moves.min(first + TOGETHER));
-            (0..moves).step_by(TOGETHER).map(part)
-        })
-        .collect();
+    let parts = parts(cutters);
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
     // A first look everywhere: what it finds need not be found again. Then what is left, as well as is wanted; at last,
@@ -195,13 +199,7 @@ fn enclosed(
     let mut all = Enclosed::default();
     let mut depths = Vec::new();
     for ((path, moves), mut found) in parts.into_iter().zip(found) {
-        let trees = std::mem::take(&mut found.trees).into_iter().enumerate();
-        all.trees.extend(trees.map(|(solid, bytes)| Tree {
-            path,
-            moves: moves.clone(),
-            solid,
-            bytes,
-        }));
+        all.trees.extend(trees(path, moves, std::mem::take(&mut found.trees)));
         all.join(path, found, &mut depths);
     }
     // What is left open elsewhere, but no deeper than what is known, is settled.
@@ -211,6 +209,26 @@ fn enclosed(
     all.open_count = depths.iter().filter(|depth| **depth > settled).count();
     all.bound = all.bound.max(known);
     Some(all)
+}
+
+/// The trees of all solids in a part of the work.
+pub(super) fn trees(path: usize, moves: Range<usize>, all: Vec<Vec<u8>>) -> impl Iterator<Item = Tree> {
+    all.into_iter().enumerate().map(move |(solid, bytes)| Tree {
+        path,
+        moves: moves.clone(),
+        solid,
+        bytes,
+    })
+}
+
+/// Parts of the work: some consecutive moves of a cutter each.
+pub(super) fn parts(cutters: &[Cutter]) -> Vec<(usize, Range<usize>)> {
+    let of_one = |(number, cutter): (usize, &Cutter)| {
+        let moves = cutter.path.moves();
+        let part = move |first| (number, first..moves.min(first + TOGETHER));
+        (0..moves).step_by(TOGETHER).map(part)
+    };
+    cutters.iter().enumerate().flat_map(of_one).collect()
 }
 
 /// What is asked of a look.
@@ -232,15 +250,15 @@ fn look_at(
     monitor: &dyn Monitor,
 ) -> Option<Vec<Found>> {
     let (done, total) = (AtomicUsize::new(0), parts.len());
-    let look = |(number, moves): &(usize, Range<usize>)| {
+    let look = |root: &Cell, (number, moves): &(usize, Range<usize>)| {
         if monitor.cancelled() {
             return None;
         }
-        let found = look(target, &cutters[*number], moves.clone(), limits, asked);
+        let found = look((target, root), &cutters[*number], moves.clone(), limits, asked);
         monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Some(found)
     };
-    parts.par_iter().with_max_len(1).map(look).collect()
+    target.each(parts, look)
 }
 
 impl Enclosed {
@@ -264,9 +282,15 @@ impl Enclosed {
 }
 
 /// Some moves of a cutter.
-fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, asked: Asked) -> Found {
-    let reach = cutter.solids.iter().map(Convex::reach).fold(0.0, f64::max);
-    let stretches = cutter.stretches(moves, limits.deviation());
+fn look(
+    (target, root): (&Target, &Cell),
+    cutter: &Cutter,
+    moves: Range<usize>,
+    limits: &Limits,
+    asked: Asked,
+) -> Found {
+    let reach = cutter.reach;
+    let stretches = cutter.stretches(moves, limits.deviation);
     let size = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));
@@ -275,8 +299,8 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
         limit: limits.depth,
         width: asked.width,
         // A checker adds the deviation too, and rounding of its own.
-        allowance: 2.0 * limits.deviation() + ROUNDING * (size + reach),
-        slack: limits.deviation() + ROUNDING * (size + reach),
+        allowance: 2.0 * limits.deviation + ROUNDING * (size + reach),
+        slack: limits.deviation + ROUNDING * (size + reach),
         pairs: asked.pairs,
         known: asked.known,
         recorded: asked.recorded,
@@ -289,14 +313,14 @@ fn look(target: &Target, cutter: &Cutter, moves: Range<usize>, limits: &Limits, 
             wanted.pairs = wanted.pairs.min(FIRST_LOOK);
         }
         let run = Run::new(solid, &stretches, wanted.slack);
-        let found = Search::new(target, &run, wanted).run();
+        let found = Search::new((target, root), &run, wanted).run();
         all.beside(found);
     }
     all
 }
 
 /// The segments of a move, of equal duration between two times of it.
-fn add(pieces: &mut Vec<Piece>, segments: Vec<Segment>, number: usize, [from, to]: [f64; 2]) {
+fn add(pieces: &mut Vec<Piece>, segments: Vec<Segment>, (number, is_other): (usize, bool), [from, to]: [f64; 2]) {
     let count = segments.len() as f64;
     let time = |k: usize| from + (to - from) * k as f64 / count;
     for (k, segment) in segments.into_iter().enumerate() {
@@ -304,6 +328,7 @@ fn add(pieces: &mut Vec<Piece>, segments: Vec<Segment>, number: usize, [from, to
             number,
             times: [time(k), time(k + 1)],
             segment,
+            is_other,
         });
     }
 }

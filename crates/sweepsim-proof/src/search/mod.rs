@@ -13,4 +13,5 @@ mod reach;
 mod trace;
 
 pub use closest::{Closest, closest};
-pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_recorded};
+pub(crate) use gouge::TOGETHER;
+pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest};

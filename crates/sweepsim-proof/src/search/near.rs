@@ -31,6 +31,8 @@ pub(super) struct Found {
     pub open_count: usize,
     pub moves: BTreeMap<usize, Witness>,
     pub pairs: usize,
+    /// For each solid, how that was proven, if it was recorded.
+    pub trees: Vec<Vec<u8>>,
 }
 
 impl Found {
@@ -49,7 +51,9 @@ impl Found {
     /// With what an earlier look has found of the same.
     pub fn take(&mut self, earlier: Self) {
         self.pairs += earlier.pairs;
-        self.bound = self.bound.max(earlier.bound);
+        if earlier.pairs > 0 && earlier.bound > self.bound {
+            (self.bound, self.trees) = (earlier.bound, earlier.trees);
+        }
         for witness in earlier.nearest.into_iter().chain(earlier.moves.into_values()) {
             self.see(witness, f64::NEG_INFINITY);
         }

@@ -5,6 +5,7 @@ use super::gouge::Limits;
 use super::near::{Found, MOST_OPEN, enough};
 use super::pair::{Pair, When};
 use super::reach::During;
+use super::trace::{Reason, Trace};
 use crate::motion::Run;
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::Witness;
@@ -15,6 +16,7 @@ use std::collections::BinaryHeap;
 /// The search for how near a solid comes to a target on a run of stretches.
 pub(super) struct Search<'a> {
     target: &'a Target,
+    root: &'a Cell,
     run: &'a Run<'a>,
     level: Level,
     limits: &'a Limits,
@@ -23,20 +25,29 @@ pub(super) struct Search<'a> {
     found: Found,
     open: BinaryHeap<Pair<'a>>,
     count: usize,
+    trace: Trace,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(target: &'a Target, run: &'a Run<'a>, limits: &'a Limits, (known, rounding): (f64, f64)) -> Self {
+    pub fn new(
+        (target, root): (&'a Target, &'a Cell),
+        run: &'a Run<'a>,
+        limits: &'a Limits,
+        (known, rounding): (f64, f64),
+        recorded: bool,
+    ) -> Self {
         Self {
             target,
+            root,
             run,
             level: Level::new(run.solid),
             limits,
             known,
-            allowance: limits.deviation() + rounding,
+            allowance: 2.0 * (limits.deviation + rounding),
             found: Found::nothing(),
             open: BinaryHeap::new(),
             count: 0,
+            trace: Trace::new(recorded),
         }
     }
 
@@ -45,7 +56,7 @@ impl<'a> Search<'a> {
             return self.found;
         };
         self.enter();
-        self.push(0.0, &self.target.root, When::Node(root));
+        self.push((0.0, 0), self.root, When::Node(root));
         while let Some(pair) = self.open.pop() {
             if -pair.depth >= self.enough() {
                 // So are all others.
@@ -63,6 +74,9 @@ impl<'a> Search<'a> {
             self.found.pairs += 1;
             self.visit(&pair);
         }
+        // Depths of less than 0 are distances.
+        let tree = self.trace.written(-self.found.bound, self.allowance);
+        self.found.trees.extend(tree);
         self.found
     }
 
@@ -78,7 +92,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn push(&mut self, distance: f64, cell: &'a Cell, when: When) {
+    fn push(&mut self, (distance, node): (f64, u32), cell: &'a Cell, when: When) {
         let order = self.count;
         self.count += 1;
         self.open.push(Pair {
@@ -86,7 +100,7 @@ impl<'a> Search<'a> {
             order,
             cell,
             when,
-            node: 0,
+            node,
         });
     }
 
@@ -99,9 +113,9 @@ impl<'a> Search<'a> {
     }
 
     fn visit(&mut self, pair: &Pair<'a>) {
-        let Pair { cell, when, .. } = *pair;
+        let Pair { cell, when, node, .. } = *pair;
         if matches!(cell.near, Near::Outside | Near::Inside) {
-            return;
+            return self.nothing(node);
         }
         let own;
         let (during, whole) = match when {
@@ -132,8 +146,17 @@ impl<'a> Search<'a> {
             cell,
             surface: (cell.count() <= MOST_PIECES).then_some(self.target),
         };
-        let (distance, normal) = apart.distance(self.enough());
-        let distance = distance.max(-pair.depth);
+        let Some((own, normal)) = apart.distance(self.enough()) else {
+            self.settle(-pair.depth);
+            return self.leave(pair);
+        };
+        let reason = if apart.surface.is_some() {
+            Reason::Lifted
+        } else {
+            Reason::Separated
+        };
+        self.trace.bound(node, reason, [Some(normal.written), None, None], -own);
+        let (distance, normal) = (own.max(-pair.depth), normal.vector);
         if distance >= self.enough() {
             return self.settle(distance);
         }
@@ -153,28 +176,29 @@ impl<'a> Search<'a> {
         if distance >= self.enough() {
             return self.settle(distance);
         }
-        if !self.divide(cell, when, distance, apart.during.bend) {
+        if !self.divide((cell, node), when, distance, apart.during.bend) {
             self.settle(distance);
             self.leave(pair);
         }
     }
 
     /// Divides the time if the body moves farther in it than the cell is wide, else the cell.
-    fn divide(&mut self, cell: &'a Cell, when: When, distance: f64, bend: f64) -> bool {
+    fn divide(&mut self, (cell, node): (&'a Cell, u32), when: When, distance: f64, bend: f64) -> bool {
         let (stretch, times) = match when {
             When::Node(number) => {
-                let node = self.run.nodes[number];
-                match node.halves {
+                let some = self.run.nodes[number];
+                match some.halves {
                     Some(halves) => {
-                        if node.tips.size().max(bend) > 2.0 * cell.half {
-                            halves
-                                .iter()
-                                .for_each(|half| self.push(distance, cell, When::Node(*half)));
+                        if some.tips.size().max(bend) > 2.0 * cell.half {
+                            let first = self.trace.divide_time(node);
+                            for (half, node) in halves.into_iter().zip(first..) {
+                                self.push((distance, node), cell, When::Node(half));
+                            }
                             return true;
                         }
-                        return self.divide_cell(cell, when, distance);
+                        return self.divide_cell((cell, node), when, distance);
                     }
-                    None => (node.first, [0.0, 1.0]),
+                    None => (some.first, [0.0, 1.0]),
                 }
             }
             When::Part { stretch, times } => (stretch, times),
@@ -184,24 +208,33 @@ impl<'a> Search<'a> {
         let moves = self.run.stretches[stretch].travel(self.run.reach, duration) > 2.0 * cell.half;
         if duration > 1e-9 && (bends || moves) {
             let middle = 0.5 * (times[0] + times[1]);
-            for times in [[times[0], middle], [middle, times[1]]] {
-                self.push(distance, cell, When::Part { stretch, times });
+            let first = self.trace.divide_time(node);
+            for (times, node) in [[times[0], middle], [middle, times[1]]].into_iter().zip(first..) {
+                self.push((distance, node), cell, When::Part { stretch, times });
             }
             return true;
         }
-        cell.half > 0.02 * self.limits.width && self.divide_cell(cell, when, distance)
+        cell.half > 0.02 * self.limits.width && self.divide_cell((cell, node), when, distance)
     }
 
-    fn divide_cell(&mut self, cell: &'a Cell, when: When, distance: f64) -> bool {
+    fn divide_cell(&mut self, (cell, node): (&'a Cell, u32), when: When, distance: f64) -> bool {
         let target = self.target;
-        for octant in 0..8 {
+        let first = self.trace.divide_cell(node);
+        for (octant, node) in (0..8).zip(first..) {
             let child = cell.child(octant, &target.triangles, &target.distance, &target.cells_left);
             let Some(child) = child else { return false };
-            if !matches!(child.near, Near::Outside | Near::Inside) {
-                self.push(distance, child, when);
+            if matches!(child.near, Near::Outside | Near::Inside) {
+                self.nothing(node);
+            } else {
+                self.push((distance, node), child, when);
             }
         }
         true
+    }
+
+    /// Nothing of the surface is here.
+    fn nothing(&mut self, node: u32) {
+        self.trace.bound(node, Reason::Outside, [None; 3], f64::NEG_INFINITY);
     }
 
     fn see(&mut self, piece: usize, t: f64, place: Vector3<f64>, distance: f64) {

@@ -8,12 +8,11 @@
 //! | 0 | The time is divided: two nodes. |
 //! | 1 | The cell is divided. A byte tells which of the eight cells the moving solid may reach; a node for each of these. |
 //! | 2 | The box that the solid sweeps misses the cell. |
-//! | 3 | Nothing of the surface is near the cell, and it is outside of the target. |
+//! | 3 | Nothing of the surface is near the cell, and it is outside of the target; of distances, only the former. |
 //! | 4 | Bound by the depth of the cell's middle. |
 //! | 5 | A plane separates the solid from the cell: a normal. |
-//! | 6 | The cell, lifted along a normal. |
-//! | 7, 8, 9 | The solid, lifted above one, two or three planes: their normals. |
-//! | 10 | Between two planes: their normals. |
+//! | 6, 7, 8 | The solid, or all of the cell, lifted above one, two or three planes: their normals. |
+//! | 9 | Between two planes: their normals. |
 //!
 //! A normal is a number `k`: 0, and three `f32`; or 1, and the number of a triangle; or that which was written
 //! `k − 1` normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its
@@ -22,7 +21,7 @@
 use crate::solid::Written;
 use std::collections::HashMap;
 
-/// Why no point in a cell is deeper at a time.
+/// Why no point in a cell is deeper at a time. Less than no depth is a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 pub(super) enum Reason {
@@ -30,11 +29,10 @@ pub(super) enum Reason {
     Outside = 3,
     Middle = 4,
     Separated = 5,
-    CellLifted = 6,
-    Lifted = 7,
-    LiftedTwice = 8,
-    LiftedThrice = 9,
-    Slab = 10,
+    Lifted = 6,
+    LiftedTwice = 7,
+    LiftedThrice = 8,
+    Slab = 9,
 }
 
 impl Reason {
@@ -42,7 +40,7 @@ impl Reason {
     fn normals(self) -> usize {
         match self {
             Self::Missed | Self::Outside | Self::Middle => 0,
-            Self::Separated | Self::CellLifted | Self::Lifted => 1,
+            Self::Separated | Self::Lifted => 1,
             Self::LiftedTwice | Self::Slab => 2,
             Self::LiftedThrice => 3,
         }
@@ -81,6 +79,7 @@ const NODE: Node = Node {
 /// The nodes of a search, if it is recorded.
 #[derive(Debug)]
 pub(super) struct Trace {
+    recorded: bool,
     nodes: Option<Vec<Node>>,
     normals: Vec<Written>,
 }
@@ -91,6 +90,7 @@ const MOST_NODES: usize = 8_000_000;
 impl Trace {
     pub fn new(recorded: bool) -> Self {
         Self {
+            recorded,
             nodes: recorded.then(|| vec![NODE]),
             normals: Vec::new(),
         }
@@ -128,9 +128,9 @@ impl Trace {
         first
     }
 
-    /// The tree down to where bounds are at most a value, in bytes; none if it was not recorded. `allowance`: of all
-    /// bounds.
-    pub fn written(&self, bound: f64, allowance: f64) -> Vec<u8> {
+    /// The tree down to where bounds are at most a value, in bytes: empty if it was too much. `None` if it was not to be
+    /// recorded. `allowance`: of all bounds.
+    pub fn written(&self, bound: f64, allowance: f64) -> Option<Vec<u8>> {
         let mut written = Writer::default();
         let mut open = vec![0_u32];
         while let (Some(nodes), Some(number)) = (&self.nodes, open.pop()) {
@@ -158,7 +158,7 @@ impl Trace {
                 Division::None => written.bytes.push(Reason::Middle as u8),
             }
         }
-        written.bytes
+        self.recorded.then_some(written.bytes)
     }
 }
 

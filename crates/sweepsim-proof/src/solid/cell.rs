@@ -152,6 +152,20 @@ impl Cell {
         Some(child.get_or_init(|| Self::new(centre, half, &self.near, triangles, distance)))
     }
 
+    /// Forgets all parts of cells with few triangles: how much is left.
+    pub fn prune(&mut self) -> usize {
+        if !matches!(self.near, Near::Many(_)) {
+            *self = Self::with(self.centre, self.half, std::mem::replace(&mut self.near, Near::Outside));
+        }
+        let own = 1 + self.pieces().len() / 8;
+        let children = self
+            .children
+            .get_mut()
+            .into_iter()
+            .flat_map(|children| children.iter_mut());
+        own + children.filter_map(OnceLock::get_mut).map(Self::prune).sum::<usize>()
+    }
+
     /// Directions to try: the mean normal, and those of the triangles.
     pub fn ways(&self, triangles: &[Triangle]) -> &[Way] {
         &self.known(triangles).ways

@@ -11,23 +11,33 @@ pub(crate) use way::{Normal, Triangle, Way, Written};
 pub use faults::Fault;
 
 use nalgebra::Vector3;
-use std::sync::atomic::AtomicUsize;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{PoisonError, RwLock};
 use sweepsim_dexel::{DistanceTo, MeshError, TriangleSoup};
 
 /// A solid between closed triangles, prepared for proofs.
 #[derive(Debug)]
 pub struct Target {
     pub(crate) triangles: Vec<Triangle>,
-    pub(crate) root: Cell,
+    root: RwLock<Cell>,
+    /// The cube that is divided: its centre, and half of its size.
+    cube: (Vector3<f64>, f64),
     pub(crate) distance: DistanceTo,
     /// How many more cells there may be.
     pub(crate) cells_left: AtomicUsize,
     /// A bound of all coordinates.
     pub(crate) size: f64,
+    /// Whether all triangles have an area.
+    pub(crate) is_whole: bool,
 }
 
 /// At most as many cells, of some hundred bytes each; of one with pieces, every eight count as another.
 const MOST_CELLS: usize = 2_000_000;
+/// No more of them are kept for the next parts of a work.
+const KEPT: usize = 100_000;
+/// So many parts of a work are done before that is looked at.
+const TOGETHER: usize = 32;
 
 impl Target {
     /// # Errors
@@ -57,7 +67,9 @@ impl Target {
         let size = low.amax().max(high.amax());
         let (centre, half) = root(&low, &high);
         Ok(Self {
-            root: Cell::new(centre, half, &all, &triangles, &distance),
+            root: RwLock::new(Cell::new(centre, half, &all, &triangles, &distance)),
+            cube: (centre, half),
+            is_whole: triangles.len() == soup.triangles.len(),
             triangles,
             distance,
             cells_left: AtomicUsize::new(MOST_CELLS),
@@ -75,7 +87,30 @@ impl Target {
     /// The cube that is divided: its centre and half of its size.
     #[must_use]
     pub fn root(&self) -> ([f64; 3], f64) {
-        (self.root.centre.into(), self.root.half)
+        (self.cube.0.into(), self.cube.1)
+    }
+
+    /// Does a work in parts, some at a time, with the cells in between, and forgets these when they are many. What
+    /// remains known does not depend on threads. `None` if one of the parts is none.
+    pub(crate) fn each<T: Sync, U: Send>(
+        &self,
+        parts: &[T],
+        work: impl Fn(&Cell, &T) -> Option<U> + Sync,
+    ) -> Option<Vec<U>> {
+        let mut all = Vec::with_capacity(parts.len());
+        for some in parts.chunks(TOGETHER) {
+            let own: Option<Vec<U>> = {
+                let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
+                some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
+            };
+            all.extend(own?);
+            if MOST_CELLS - self.cells_left.load(Ordering::Relaxed) > KEPT {
+                let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
+                self.cells_left
+                    .store(MOST_CELLS.saturating_sub(root.prune()), Ordering::Relaxed);
+            }
+        }
+        Some(all)
     }
 
     /// How deep a point lies in the solid; negative outside.

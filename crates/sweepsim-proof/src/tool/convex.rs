@@ -14,6 +14,8 @@ pub struct Convex {
     pub(super) exact: bool,
     /// Whether it bounds a tool whose shape is not known well.
     pub(super) loose: bool,
+    /// It is the hull of so many curves of the outline, or of one of so many parts of one.
+    pub(super) cut: [usize; 2],
 }
 
 /// An arc with the material on the side of its centre, of at most 90°.
@@ -55,6 +57,12 @@ impl Convex {
     /// Its arcs, none longer than 90°: centre, radius, and the unit normals at both ends, counter-clockwise.
     pub fn arcs(&self) -> impl Iterator<Item = ([f64; 2], f64, [[f64; 2]; 2])> {
         self.arcs.iter().map(|arc| (arc.centre, arc.radius, arc.normals))
+    }
+
+    /// Of how many curves of its tool's outline it is the hull, and 1; or 1, and of one of how many parts of a curve.
+    #[must_use]
+    pub fn cut(&self) -> [usize; 2] {
+        self.cut
     }
 
     /// The largest value of `⟨direction, x⟩` over the solid whose axis is a unit vector and whose tip is the origin.

@@ -21,7 +21,9 @@ pub fn cover(tool: &Tool, tolerance: f64) -> Vec<Convex> {
     if curves.is_empty() {
         return vec![around_patches(tool)];
     }
-    let mut cover = Vec::new();
+    // If it does, something may be between the outline and the axis that is none of the tool.
+    let falls = curves.iter().any(falls);
+    let mut cover: Vec<Convex> = Vec::new();
     let mut stretch = Stretch::new(curves[0].from);
     let mut before: Option<[f64; 2]> = None;
     for curve in &curves {
@@ -32,19 +34,33 @@ pub fn cover(tool: &Tool, tolerance: f64) -> Vec<Convex> {
         if is_convex(curve) {
             stretch.add(curve);
         } else {
-            for points in pieces(curve, tolerance) {
-                cover.extend(stretch.close());
+            cover.extend(stretch.close());
+            let all = pieces(curve, tolerance);
+            let count = all.len();
+            for points in all {
                 stretch = Stretch::new(points[0]);
                 stretch.convex.corners.extend(points);
-                stretch.convex.exact = false;
+                (stretch.convex.exact, stretch.convex.cut) = (false, [1, count]);
+                cover.extend(stretch.close());
             }
-            cover.extend(stretch.close());
             stretch = Stretch::new(curve.to);
         }
         before = Some(curve.directions[1]);
     }
     cover.extend(stretch.close());
+    cover.iter_mut().for_each(|convex| convex.exact &= !falls);
     cover
+}
+
+/// Whether a curve leads down again somewhere.
+fn falls(curve: &MeridianCurve) -> bool {
+    let is_below = |d: &[f64; 2]| d[1] < -SAME;
+    match curve.shape {
+        // Its direction may turn beyond those at its ends.
+        MeridianShape::Arc { sweep, .. } => curve.directions.iter().any(is_below) || sweep.abs() > PI + SAME,
+        MeridianShape::Line => curve.directions.iter().any(is_below),
+        _ => true,
+    }
 }
 
 /// By how much the direction turns to the left, in radians.
@@ -63,8 +79,6 @@ fn is_convex(curve: &MeridianCurve) -> bool {
 /// A stretch of the outline that turns left all the way.
 struct Stretch {
     convex: Convex,
-    /// How often the outline has gone down or up again: the hull is only the tool if it never does.
-    turned: f64,
 }
 
 impl Stretch {
@@ -74,14 +88,15 @@ impl Stretch {
             arcs: Vec::new(),
             exact: true,
             loose: false,
+            cut: [0, 1],
         };
-        Self { convex, turned: 0.0 }
+        Self { convex }
     }
 
     fn add(&mut self, curve: &MeridianCurve) {
         let convex = &mut self.convex;
         convex.corners.push(curve.to);
-        self.turned += f64::from(curve.directions.iter().any(|d| d[1] < -SAME));
+        convex.cut[0] += 1;
         if let MeridianShape::Arc {
             centre,
             radius,
@@ -116,7 +131,6 @@ impl Stretch {
         }
         let [low, high] = convex.heights();
         convex.corners.extend([[0.0, low], [0.0, high]]);
-        convex.exact &= self.turned == 0.0;
         // Points inside the hull of the others cost time: the support of a hull is that of its extreme points.
         convex.corners = extreme(convex.corners);
         Some(convex)
@@ -154,7 +168,7 @@ fn extreme(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     hull
 }
 
-/// Points whose hulls cover a curve, piece by piece, none wider than the tolerance.
+/// Points whose hulls cover a curve, in equal parts, none wider than the tolerance.
 fn pieces(curve: &MeridianCurve, tolerance: f64) -> Vec<Vec<[f64; 2]>> {
     match curve.shape {
         MeridianShape::Arc {
@@ -165,31 +179,30 @@ fn pieces(curve: &MeridianCurve, tolerance: f64) -> Vec<Vec<[f64; 2]>> {
         } => {
             // The material is outside of the circle, and so are the chords' ends; between them, chords are inside.
             let step = 2.0 * (1.0 - (tolerance / radius).min(1.0)).acos();
-            let count = (sweep.abs() / step.min(FRAC_PI_2)).ceil().clamp(1.0, 1e4);
-            let at = |k: f64| {
+            let count = (sweep.abs() / step.min(1.5)).ceil().clamp(1.0, MOST_PARTS as f64);
+            let at = |k: f64, r: f64| {
                 let angle = start + sweep * k / count;
-                [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
+                [centre[0] + r * angle.cos(), centre[1] + r * angle.sin()]
             };
-            (0..count as usize)
-                .map(|k| vec![at(k as f64), at((k + 1) as f64)])
-                .collect()
+            // The lines that touch the arc at both ends of a part meet at this distance.
+            let apex = radius / (0.5 * sweep / count).cos();
+            let part = |k: f64| vec![at(k, radius), at(k + 0.5, apex), at(k + 1.0, radius)];
+            (0..count as usize).map(|k| part(k as f64)).collect()
         }
         _ => {
-            let mut open = vec![curve.controls.clone()];
-            let mut flat = Vec::new();
-            while let Some(piece) = open.pop() {
-                let points: Vec<[f64; 2]> = piece.iter().map(|(point, _)| *point).collect();
-                if thickness(&points) <= tolerance || flat.len() + open.len() > 1 << 12 {
-                    flat.push(points);
-                } else {
-                    let (low, high) = halves(&piece);
-                    open.extend([high, low]);
-                }
+            let points = |piece: &Vec<Control>| piece.iter().map(|(point, _)| *point).collect::<Vec<_>>();
+            let mut all = vec![curve.controls.clone()];
+            while all.len() < MOST_PARTS && all.iter().any(|piece| thickness(&points(piece)) > tolerance) {
+                let halves = |piece: &Vec<Control>| <[_; 2]>::from(halves(piece));
+                all = all.iter().flat_map(halves).collect();
             }
-            flat
+            all.iter().map(points).collect()
         }
     }
 }
+
+/// A curve has no more parts.
+const MOST_PARTS: usize = 1 << 12;
 
 /// How far the points are from the line between the first and the last.
 fn thickness(points: &[[f64; 2]]) -> f64 {
@@ -247,5 +260,6 @@ fn around_patches(tool: &Tool) -> Convex {
         arcs: Vec::new(),
         exact: false,
         loose: true,
+        cut: [1, 1],
     }
 }

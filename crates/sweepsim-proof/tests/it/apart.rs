@@ -1,5 +1,6 @@
 //! How near a cylinder comes to a solid, against dense samples.
 
+use crate::certificates::check_distance;
 use crate::scenes::{SceneOf, scene, target};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -12,14 +13,16 @@ use sweepsim_proof::{Closest, Cutter, Limits, Target, closest, cover};
 const RADIUS: f64 = 2.0;
 const HEIGHT: f64 = 12.0;
 
-fn found(solid: &Target, path: &Path, limits: &Limits) -> Closest {
-    let solids = cover(&Tool::flat(RADIUS, HEIGHT).expect("a tool"), 1e-3);
-    let body = Cutter {
-        solids: &solids,
-        path,
-        others: None,
-    };
-    closest(solid, &[body], limits, &()).expect("not cancelled")
+fn found(soup: &TriangleSoup, path: &Path, limits: &Limits) -> Closest {
+    let (solid, tool) = (
+        Target::new(soup).expect("closed"),
+        Tool::flat(RADIUS, HEIGHT).expect("a tool"),
+    );
+    let solids = cover(&tool, 1e-3);
+    let body = Cutter::new(&solids, path, None);
+    let found = closest(&solid, &[body], limits, true, &()).expect("not cancelled");
+    check_distance((soup, &solid), (&tool, &body), limits, &found);
+    found
 }
 
 /// The distance of a point from the cylinder, in its frame.
@@ -53,13 +56,8 @@ fn check(scene: &SceneOf, spacing: f64) -> Result<bool, TestCaseError> {
         return Err(TestCaseError::reject("no such arc"));
     };
     let soup = target(scene.target, scene.size);
-    let solid = Target::new(&soup).expect("closed");
-    let limits = Limits {
-        depth: 1.0,
-        width: 0.02,
-        pairs: 100_000,
-    };
-    let found = found(&solid, &path, &limits);
+    let limits = Limits::new(1.0, 0.02, 100_000);
+    let found = found(&soup, &path, &limits);
     let (surface, mut sampled) = (points(&soup, spacing), f64::INFINITY);
     let segments = path.segments(0, 15.0, 1e-7);
     for segment in &segments {
@@ -84,7 +82,7 @@ fn check(scene: &SceneOf, spacing: f64) -> Result<bool, TestCaseError> {
         away(&own) <= witness.depth + 1e-6 || witness.depth == 0.0,
         "{own} is not so near"
     );
-    prop_assert!(solid.depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
+    prop_assert!(Target::new(&soup).expect("closed").depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
     let far = witness.depth - found.bound;
     let decided = found.bound >= limits.depth;
     prop_assert!(far <= limits.width.max(witness.depth / 32.0) + 1e-9 || decided || found.open_count > 0);
@@ -120,12 +118,8 @@ fn a_thousand_random_cylinders_are_as_near_as_samples_say() {
 
 #[test]
 fn a_cylinder_over_a_block_is_as_near_as_it_is_high() {
-    let solid = Target::new(&TriangleSoup::block([-5.0, -5.0, -5.0], [5.0, 5.0, 0.0])).expect("closed");
-    let limits = Limits {
-        depth: 1.0,
-        width: 0.01,
-        pairs: 100_000,
-    };
+    let solid = TriangleSoup::block([-5.0, -5.0, -5.0], [5.0, 5.0, 0.0]);
+    let limits = Limits::new(1.0, 0.01, 100_000);
     for height in [0.25, 0.999, 1.001, 3.0] {
         let poses = [[-20.0, 1.0, height], [20.0, 1.0, height]].map(|tip| Pose::new(tip, [0.0, 0.0, 1.0]));
         let path = Path::new(poses.map(|pose| pose.expect("a pose")).to_vec()).expect("a path");
@@ -142,12 +136,8 @@ fn a_cylinder_over_a_block_is_as_near_as_it_is_high() {
 
 #[test]
 fn a_cylinder_that_is_inside_has_no_distance() {
-    let solid = Target::new(&TriangleSoup::block([-50.0; 3], [50.0; 3])).expect("closed");
-    let limits = Limits {
-        depth: 1.0,
-        width: 0.01,
-        pairs: 1000,
-    };
+    let solid = TriangleSoup::block([-50.0; 3], [50.0; 3]);
+    let limits = Limits::new(1.0, 0.01, 1000);
     let poses = [[-5.0, 0.0, 0.0], [5.0, 0.0, 0.0]].map(|tip| Pose::new(tip, [0.0, 0.0, 1.0]).expect("a pose"));
     let found = found(&solid, &Path::new(poses.to_vec()).expect("a path"), &limits);
     assert_eq!(found.bound, 0.0);

@@ -3,10 +3,16 @@
 use crate::scenes::waves;
 use crate::walls::{LIMITS, cut, slot};
 use std::collections::BTreeSet;
-use sweepsim_check::{Certificate, Checked, Claim, Curve, Scene, TreePart, check, digest_of, trees};
-use sweepsim_dexel::TriangleSoup;
-use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Enclosed, Limits, Target, Tree, claim, cover, deepest_recorded, scene};
+use sweepsim_check::{
+    Certificate, Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, check, digest_of, packed,
+};
+use sweepsim_dexel::{Stock, TriangleSoup};
+use sweepsim_motion::Pose;
+use sweepsim_motion::{Path, Tool};
+use sweepsim_proof::{
+    Closest, Cutter, Enclosed, Left, Limits, Target, cover, deepest, depth_claim, distance_claim, height_claim, margin,
+    motions, outline, regions,
+};
 
 /// A proof, what it is about, and what is claimed.
 pub(crate) struct Certified {
@@ -15,26 +21,103 @@ pub(crate) struct Certified {
     pub claim: Claim,
 }
 
+/// One tool on one path, and a solid. `limit`: less than 0 of distances.
+pub(crate) fn scene(
+    soup: &TriangleSoup,
+    (tool, cutter): (&Tool, &Cutter),
+    limits: &Limits,
+    (measure, limit): (Measure, f64),
+    stock: Option<&Stock>,
+) -> Scene {
+    let size = soup.triangles.as_flattened().as_flattened().iter();
+    let size = size.fold(0.0, |size: f64, c| size.max(c.abs()));
+    let margin = margin(size, &[*cutter], limits);
+    Scene {
+        solids: vec![soup.triangles.clone()],
+        outlines: vec![outline(tool)],
+        paths: vec![motions(cutter, limits.deviation)],
+        deviation: limits.deviation,
+        stock: stock.and_then(|stock| regions(stock, 6.0 * margin)).unwrap_or_default(),
+        margin,
+        questions: vec![Question {
+            about: "a test".into(),
+            measure,
+            limit,
+            solid: 0,
+            movers: vec![(0, 0)],
+        }],
+    }
+}
+
 pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &Limits) -> Certified {
     let target = Target::new(soup).expect("closed");
     let solids = cover(tool, 0.01 * limits.depth);
-    let cutter = Cutter {
-        solids: &solids,
-        path,
-        others: None,
-    };
-    let found = deepest_recorded(&target, &[cutter], limits, &()).expect("not cancelled");
-    let own = [(1, cutter)];
-    Certified {
-        scene: scene(soup, [(1, tool)], &own, limits),
-        claim: claim(&target, &own, limits, &found).expect("recorded"),
-        found,
+    let cutter = Cutter::new(&solids, path, None);
+    let found = deepest(&target, &[cutter], limits, true, &()).expect("not cancelled");
+    let scene = scene(soup, (tool, &cutter), limits, (Measure::Depth, limits.depth), None);
+    let claim = depth_claim(&scene, &scene.questions[0], &target, &[(0, cutter)], &found).expect("recorded");
+    Certified { found, scene, claim }
+}
+
+/// What is claimed of heights is accepted, and less than that is not. Nothing is claimed where it is not known.
+pub(crate) fn check_height(
+    (soup, stock): (&TriangleSoup, &Stock),
+    (tool, cutter): (&Tool, &Cutter),
+    limits: &Limits,
+    left: &Left,
+) {
+    let scene = scene(
+        soup,
+        (tool, cutter),
+        limits,
+        (Measure::Height, limits.depth),
+        Some(stock),
+    );
+    let claim = height_claim(&scene, &scene.questions[0], &[(0, *cutter)], left);
+    assert_eq!(claim.is_some(), left.bound.is_finite());
+    let Some(claim) = claim else { return };
+    let own = checked(&scene, &claim);
+    assert!(own.is_proven() && own.bound == left.bound, "{own:?}");
+    if let Some((_, height)) = left.highest {
+        // The stock counts without its skin.
+        let claim = Claim {
+            bound: height - 8.0 * scene.margin,
+            ..claim
+        };
+        assert!(!checked(&scene, &claim).is_proven());
     }
+}
+
+/// The same of distances.
+pub(crate) fn check_distance(
+    (soup, target): (&TriangleSoup, &Target),
+    (tool, body): (&Tool, &Cutter),
+    limits: &Limits,
+    found: &Closest,
+) {
+    let scene = scene(soup, (tool, body), limits, (Measure::Depth, -limits.depth), None);
+    let claim = distance_claim(&scene, &scene.questions[0], target, &[(0, *body)], found);
+    assert_eq!(claim.is_some(), found.bound > 0.0);
+    let Some(claim) = claim else { return };
+    let own = checked(&scene, &claim);
+    assert!(own.is_proven() && own.bound <= -found.bound, "{own:?} {}", found.bound);
+    if let Some((_, nearest)) = &found.nearest {
+        let claim = Claim {
+            bound: -nearest.depth - 1e-6,
+            ..claim
+        };
+        assert!(!checked(&scene, &claim).is_proven());
+    }
+}
+
+/// What a checker says of a claim.
+pub(crate) fn checked(scene: &Scene, claim: &Claim) -> Checked {
+    check(scene, &scene.questions[0], claim, 1)
 }
 
 impl Certified {
     pub fn checked(&self) -> Checked {
-        check(&self.scene, &self.claim, 1)
+        checked(&self.scene, &self.claim)
     }
 
     /// It is accepted, with a bound that holds the truth.
@@ -59,7 +142,7 @@ fn small() -> Certified {
 }
 
 fn written(certified: &Certified) -> Vec<u8> {
-    let (digest, claims) = (certified.scene.digest(), vec![certified.claim.clone()]);
+    let (digest, claims) = (certified.scene.digest(), vec![Some(certified.claim.clone())]);
     let certificate = Certificate::new("a test".into(), serde_json::json!({"a": 1}), Vec::new(), digest, claims);
     certificate.written().expect("a notation").into_bytes()
 }
@@ -98,14 +181,12 @@ fn what_is_accepted_after_a_change_is_true() {
             if certificate.scene != certified.scene.digest() {
                 continue;
             }
-            for claim in &certificate.statement {
-                if check(&certified.scene, claim, 1).is_proven() {
+            for claim in certificate.claims.iter().flatten() {
+                if checked(&certified.scene, claim).is_proven() {
                     proven += 1;
-                    let [lo, hi] = claim.enclosure;
-                    assert!(
-                        claim.about == "gouge" && lo <= TRUTH && hi >= TRUTH,
-                        "byte {number}: {lo} {hi}"
-                    );
+                    let lo = claim.witness.as_ref().map_or(0.0, |witness| witness.depth);
+                    let is_true = claim.about == "a test" && lo <= TRUTH && claim.bound >= TRUTH;
+                    assert!(is_true, "byte {number}: {lo} {}", claim.bound);
                 }
             }
         }
@@ -115,20 +196,11 @@ fn what_is_accepted_after_a_change_is_true() {
 }
 
 /// The claim with other trees.
-fn with(certified: &Certified, change: impl Fn(&Tree) -> Vec<u8>) -> Claim {
-    let changed: Vec<(Tree, Vec<u8>)> = certified
-        .found
-        .trees
-        .iter()
-        .map(|tree| (tree.clone(), change(tree)))
-        .collect();
+fn with(certified: &Certified, change: impl Fn(&[u8]) -> Vec<u8>) -> Claim {
     let mut claim = certified.claim.clone();
-    claim.trees = trees(changed.iter().map(|(tree, bytes)| TreePart {
-        path: tree.path,
-        moves: [tree.moves.start, tree.moves.len()],
-        solid: tree.solid,
-        bytes,
-    }));
+    for (tree, own) in claim.trees.iter_mut().zip(&certified.found.trees) {
+        tree.bytes = packed(&change(&own.bytes));
+    }
     claim
 }
 
@@ -138,27 +210,28 @@ fn no_tree_proves_too_little() {
     let certified = small();
     let bytes = certified.found.trees[0].bytes.clone();
     let too_little = |claim: Claim| Claim {
-        enclosure: [0.0, TRUTH - 1e-6],
+        bound: TRUTH - 1e-6,
+        witness: None,
         ..claim
     };
     let mut refused = 0;
     for number in (0..bytes.len()).step_by(3) {
-        for byte in (0..=11).chain([0x80, 0xff]) {
-            let change = |tree: &Tree| {
-                let mut bytes = tree.bytes.clone();
+        for byte in (0..=10).chain([0x80, 0xff]) {
+            let change = |tree: &[u8]| {
+                let mut bytes = tree.to_vec();
                 bytes[number] = byte;
                 bytes
             };
             let claim = with(&certified, change);
-            let checked = check(&certified.scene, &claim, 1);
-            refused += usize::from(!checked.is_proven());
-            assert!(!check(&certified.scene, &too_little(claim), 1).is_proven());
+            let own = checked(&certified.scene, &claim);
+            refused += usize::from(!own.is_proven());
+            assert!(!checked(&certified.scene, &too_little(claim)).is_proven());
         }
         // A byte is missing, or there is one more.
         for count in [0, 2] {
-            let change = |tree: &Tree| {
-                let own = std::iter::repeat_n(tree.bytes[number], count);
-                let bytes = tree.bytes.iter().copied();
+            let change = |tree: &[u8]| {
+                let own = std::iter::repeat_n(tree[number], count);
+                let bytes = tree.iter().copied();
                 bytes
                     .clone()
                     .take(number)
@@ -167,9 +240,9 @@ fn no_tree_proves_too_little() {
                     .collect()
             };
             let claim = with(&certified, change);
-            let checked = check(&certified.scene, &claim, 1);
-            refused += usize::from(!checked.is_proven());
-            assert!(!check(&certified.scene, &too_little(claim), 1).is_proven());
+            let own = checked(&certified.scene, &claim);
+            refused += usize::from(!own.is_proven());
+            assert!(!checked(&certified.scene, &too_little(claim)).is_proven());
         }
     }
     assert!(refused > 2 * bytes.len(), "{refused} of {}", 5 * bytes.len());
@@ -188,7 +261,7 @@ fn after(bytes: &[u8], at: usize) -> Option<usize> {
             end
         }
         kind => {
-            let normals = [0, 0, 0, 0, 0, 1, 1, 1, 2, 3, 2][usize::from(kind)];
+            let normals = [0, 0, 0, 0, 0, 1, 1, 2, 3, 2][usize::from(kind)];
             let mut end = at + 1;
             for _ in 0..normals {
                 let number = end;
@@ -231,34 +304,23 @@ fn nodes(bytes: &[u8]) -> BTreeSet<usize> {
 #[test]
 fn leaves_and_divisions_are_needed() {
     let certified = small();
-    let refused = |change: &dyn Fn(&Tree) -> Vec<u8>| {
-        let checked = check(&certified.scene, &with(&certified, change), 1);
-        assert!(!checked.is_proven(), "{checked:?}");
+    let refused = |change: &dyn Fn(&[u8]) -> Vec<u8>| {
+        let own = checked(&certified.scene, &with(&certified, change));
+        assert!(!own.is_proven(), "{own:?}");
     };
-    let bytes = &certified.found.trees[0].bytes;
     // Without the last leaf; with one more; without the first division.
-    refused(&|tree| tree.bytes[..tree.bytes.len() - 1].to_vec());
-    refused(&|tree| [&tree.bytes[..], &[2]].concat());
-    refused(&|tree| tree.bytes[1..].to_vec());
+    refused(&|tree| tree[..tree.len() - 1].to_vec());
+    refused(&|tree| [tree, &[2]].concat());
+    refused(&|tree| tree[1..].to_vec());
     refused(&|_| vec![4]);
     refused(&|_| Vec::new());
     refused(&|_| vec![0; 1000]);
     refused(&|_| [1, 255].repeat(1000));
-    let twice = |claim: &Claim| Claim {
-        trees: trees([0, 1].map(|_| TreePart {
-            path: 0,
-            moves: [0, 3],
-            solid: 0,
-            bytes,
-        })),
-        ..claim.clone()
-    };
-    assert!(!check(&certified.scene, &twice(&certified.claim), 1).is_proven());
-    let none = Claim {
-        trees: trees([]),
-        ..certified.claim.clone()
-    };
-    assert!(!check(&certified.scene, &none, 1).is_proven());
+    let mut claim = certified.claim.clone();
+    claim.trees.extend(certified.claim.trees.clone());
+    assert!(!checked(&certified.scene, &claim).is_proven());
+    claim.trees = Vec::<Tree>::new();
+    assert!(!checked(&certified.scene, &claim).is_proven());
 }
 
 /// Both halves of a division of time, exchanged, prove what they prove: mostly nothing.
@@ -272,7 +334,7 @@ fn times_are_not_exchanged() {
     };
     let path = Path::new((0..9).map(pose).collect()).expect("a path");
     let certified = certified(&waves(0.8, 24), &tool, &path, &LIMITS);
-    let known = certified.claim.enclosure[0];
+    let known = certified.claim.witness.as_ref().expect("a witness").depth;
     assert!(known > 0.1);
     certified.check(known);
     let bytes = &certified.found.trees[0].bytes;
@@ -284,12 +346,13 @@ fn times_are_not_exchanged() {
         let own = [&bytes[..=number], second, first, &bytes[end..]].concat();
         let claim = with(&certified, |_| own.clone());
         exchanged += 1;
-        refused += usize::from(!check(&certified.scene, &claim, 1).is_proven());
+        refused += usize::from(!checked(&certified.scene, &claim).is_proven());
         let claim = Claim {
-            enclosure: [0.0, known - 1e-6],
+            bound: known - 1e-6,
+            witness: None,
             ..claim
         };
-        assert!(!check(&certified.scene, &claim, 1).is_proven());
+        assert!(!checked(&certified.scene, &claim).is_proven());
     }
     assert!(refused > exchanged / 2 && refused > 10, "{refused} of {exchanged}");
 }
@@ -303,45 +366,52 @@ fn other_scenes_are_refused() {
         change(&mut scene);
         assert_ne!(scene.digest(), digest);
         if is_worse {
-            assert!(!check(&scene, &certified.claim, 1).is_proven());
+            assert!(!checked(&scene, &certified.claim).is_proven());
         }
     };
     refused(&|scene| scene.deviation *= 2.0, false);
-    refused(&|scene| scene.triangles[3][1][2] += 1e-12, true);
-    refused(&|scene| scene.triangles.truncate(scene.triangles.len() - 1), true);
-    refused(&|scene| scene.triangles[5].swap(0, 1), true);
-    refused(&|scene| scene.paths[0].poses[1][0][2] -= 0.1, true);
-    refused(&|scene| scene.paths[0].poses[2][0][1] += 0.01, true);
-    refused(&|scene| scene.paths[0].poses.truncate(3), true);
-    refused(&|scene| scene.paths[0].tool = 2, true);
-    refused(
-        &|scene| scene.paths[0].others.push((1, vec![[[0.0; 3], [0.0, 0.0, 1.0]]])),
-        false,
-    );
-    refused(&|scene| scene.paths[0].others.push((7, Vec::new())), true);
-    // A larger tool is not covered.
+    refused(&|scene| scene.solids[0][3][1][2] += 1e-12, true);
+    refused(&|scene| scene.solids[0].truncate(5), true);
+    refused(&|scene| scene.solids[0][5].swap(0, 1), true);
+    let moved = |scene: &mut Scene, number: usize, by: [f64; 3]| {
+        let Course::Linear(poses) = &mut scene.paths[0][number].course else {
+            panic!("linear")
+        };
+        (0..3).for_each(|k| poses[1][0][k] += by[k]);
+    };
+    refused(&|scene| moved(scene, 1, [0.0, 0.0, -0.1]), true);
+    refused(&|scene| moved(scene, 1, [0.0, 0.01, 0.0]), true);
+    refused(&|scene| scene.paths[0].truncate(2), true);
+    refused(&|scene| scene.paths.clear(), true);
+    refused(&|scene| scene.outlines.clear(), true);
+    refused(&|scene| scene.paths[0][1].possible = true, false);
+    // A larger tool is not lifted out as the smaller one is.
     let larger = |scene: &mut Scene| {
-        for curve in &mut scene.tools[0].1.curves {
-            if let Curve::Line(ends) = curve {
-                ends.iter_mut().for_each(|end| end[0] *= 1.001);
+        for curve in &mut scene.outlines[0] {
+            if let Curve::Bezier(ends) = curve {
+                ends.iter_mut().for_each(|(end, _)| end[0] *= 1.001);
             }
         }
     };
     refused(&larger, true);
-    // Nor is one by smaller solids, or by none.
-    let mut claim = certified.claim.clone();
-    for corner in &mut claim.tools.get_mut(&1).expect("a tool")[0].corners {
-        corner[0] *= 0.999;
+    // Nor is part of its outline left out, or covered twice.
+    for cover in [
+        vec![],
+        vec![[2, 1]],
+        vec![[3, 1], [3, 1]],
+        vec![[3, 2]],
+        vec![[1, 0], [3, 1]],
+    ] {
+        let mut claim = certified.claim.clone();
+        claim.covers[0] = cover;
+        assert!(!checked(&certified.scene, &claim).is_proven());
     }
-    assert!(!check(&certified.scene, &claim, 1).is_proven());
-    claim.tools.clear();
-    assert!(!check(&certified.scene, &claim, 1).is_proven());
     // A cube that leaves out part of the target.
     let mut claim = certified.claim.clone();
     claim.root.0[1] -= 25.0;
-    assert!(!check(&certified.scene, &claim, 1).is_proven());
+    assert!(!checked(&certified.scene, &claim).is_proven());
     // A deeper witness.
     let mut claim = certified.claim.clone();
-    claim.enclosure[0] += 1e-3;
-    assert!(!check(&certified.scene, &claim, 1).is_proven());
+    claim.witness.as_mut().expect("a witness").depth += 1e-3;
+    assert!(!checked(&certified.scene, &claim).is_proven());
 }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::Stock;
-use sweepsim_motion::{Move, OtherCourses, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
+use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
 use sweepsim_proof::{Convex, Cutter, Movers, Room, Touched, Work, cover, touched};
 
 const ROOM: Room = Room {
@@ -56,11 +56,7 @@ impl Scene {
     fn touched_in(&self, stock: &Stock, movers: Movers, room: &Room) -> Touched {
         let is_rapid = |number: usize| self.rapids.contains(&number);
         let work = [Work {
-            cutter: Cutter {
-                solids: &self.cutter,
-                path: &self.path,
-                others: None::<&OtherCourses>,
-            },
+            cutter: Cutter::new(&self.cutter, &self.path, None),
             bodies: &self.bodies,
             is_rapid: &is_rapid,
         }];

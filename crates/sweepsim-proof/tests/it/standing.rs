@@ -1,5 +1,6 @@
 //! What is left standing in a slot.
 
+use crate::certificates::check_height;
 use crate::scenes::{radius_at, target, tool};
 use crate::walls::slot;
 use nalgebra::Vector3;
@@ -10,11 +11,7 @@ use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
 use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
 
-const LIMITS: Limits = Limits {
-    depth: 0.02,
-    width: 0.002,
-    pairs: 500_000,
-};
+const LIMITS: Limits = Limits::new(0.02, 0.002, 500_000);
 
 fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
     let up = [0.0, 0.0, 1.0];
@@ -25,14 +22,12 @@ fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
         max: [30.0, 20.0, 10.0],
     };
     let solids = cover(tool, 1e-4);
-    let cutter = Cutter {
-        solids: &solids,
-        path: &path,
-        others: None,
-    };
-    let target = Target::new(target).expect("closed");
-    let left = highest(&target, &stock, &[cutter], &LIMITS, &());
-    left.expect("a stock").expect("not cancelled")
+    let cutter = Cutter::new(&solids, &path, None);
+    let solid = Target::new(target).expect("closed");
+    let left = highest(&solid, &stock, &[cutter], &LIMITS, true, &());
+    let left = left.expect("a stock").expect("not cancelled");
+    check_height((target, &stock), (tool, &cutter), &LIMITS, &left);
+    left
 }
 
 fn check(target: &TriangleSoup, truth: f64) {
@@ -91,18 +86,11 @@ fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Resul
     let [low, high] = [[-9.0, -5.0, -7.5], [9.0, 5.0, 3.0]];
     let stock = Stock::Block { min: low, max: high };
     let solids = cover(&tool, 1e-4);
-    let cutter = Cutter {
-        solids: &solids,
-        path: &path,
-        others: None,
-    };
-    let limits = Limits {
-        depth: 0.3,
-        width: 0.03,
-        pairs: 60_000,
-    };
-    let found = highest(&solid, &stock, &[cutter], &limits, &());
+    let cutter = Cutter::new(&solids, &path, None);
+    let limits = Limits::new(0.3, 0.03, 60_000);
+    let found = highest(&solid, &stock, &[cutter], &limits, true, &());
     let found = found.expect("a stock").expect("not cancelled");
+    check_height((&soup, &stock), (&tool, &cutter), &limits, &found);
     let outline = tool.meridians();
     let removed = |p: &Vector3<f64>| {
         tips.windows(2).any(|pair| {
@@ -216,25 +204,20 @@ fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
         ));
     }
     let path = Path::with_moves(poses, moves).expect("a path");
-    let solids = cover(&Tool::flat(6.0, 30.0).expect("a tool"), 1e-4);
-    let cutter = Cutter {
-        solids: &solids,
-        path: &path,
-        others: None,
-    };
+    let tool = Tool::flat(6.0, 30.0).expect("a tool");
+    let solids = cover(&tool, 1e-4);
+    let cutter = Cutter::new(&solids, &path, None);
     let stock = Stock::Block {
         min: [-25.0, -25.0, -20.0],
         max: [25.0, 25.0, 0.0],
     };
     // The corners between the sides are on the circle.
-    let target = Target::new(&pocket(16.0, 72, -7.0)).expect("closed");
-    let limits = Limits {
-        depth: 0.05,
-        width: 0.005,
-        pairs: 500_000,
-    };
-    let found = highest(&target, &stock, &[cutter], &limits, &());
+    let soup = pocket(16.0, 72, -7.0);
+    let target = Target::new(&soup).expect("closed");
+    let limits = Limits::new(0.05, 0.005, 500_000);
+    let found = highest(&target, &stock, &[cutter], &limits, true, &());
     let found = found.expect("a stock").expect("not cancelled");
+    check_height((&soup, &stock), (&tool, &cutter), &limits, &found);
     assert!(
         found.bound <= limits.depth,
         "{:?} {} {:?} {}",

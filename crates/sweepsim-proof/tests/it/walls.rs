@@ -3,13 +3,9 @@
 use crate::certificates::{Certified, certified};
 use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Limits, Target, cover, deepest_recorded};
+use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
 
-pub(crate) const LIMITS: Limits = Limits {
-    depth: 0.02,
-    width: 0.002,
-    pairs: 1_000_000,
-};
+pub(crate) const LIMITS: Limits = Limits::new(0.02, 0.002, 1_000_000);
 
 /// Blocks side by side, as a solid: they touch nowhere.
 fn blocks(all: &[([f64; 3], [f64; 3])]) -> TriangleSoup {
@@ -163,12 +159,8 @@ fn threads_do_not_matter() {
             .num_threads(threads)
             .build()
             .expect("a pool");
-        let cutter = Cutter {
-            solids: &solids,
-            path: &path,
-            others: None,
-        };
-        pool.install(|| deepest_recorded(&target, &[cutter], &LIMITS, &()))
+        let cutter = Cutter::new(&solids, &path, None);
+        pool.install(|| deepest(&target, &[cutter], &LIMITS, true, &()))
             .expect("not cancelled")
     };
     let one = run(1);

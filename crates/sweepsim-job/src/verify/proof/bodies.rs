@@ -1,132 +1,58 @@
 //! What is proven of shanks and holders, and of all beside fixtures.
 
-use super::{CHORDS, LISTED, Proven, along, cutters, deep, described, finding, floor, pairs, place, solids};
+use super::{LISTED, Proof, Proven, deep, described, finding, place};
 use crate::base::JobError;
-use crate::session::Session;
+use crate::verify::asked::Asked;
 use crate::verify::texts::{ProgramTexts, name_of};
-use std::collections::BTreeMap;
 use sweepsim_formats::{Job, Measure, Statement, StatementState};
-use sweepsim_proof::{Closest, Convex, Cutter, Enclosed, Limits, Target, closest, cover, deepest};
-
-/// What goes no deeper into something than this touches it, in millimetres.
-const CONTACT: f64 = 1e-3;
-/// Distances are enclosed in so large a part of the clearance.
-const WIDTH: f64 = 0.1;
-
-/// The bodies of all tools, as solids.
-pub(super) fn bodies(job: &Job, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
-    let of_tool = |(number, own): (&u32, &Vec<sweepsim::motion::Body>)| {
-        let solids = own.iter().flat_map(|body| cover(&body.solid, tolerance));
-        (*number, solids.collect())
-    };
-    job.bodies.iter().map(of_tool).collect()
-}
-
-pub(super) fn clearance(session: Session) -> f64 {
-    session.request.judging.clearance.unwrap_or(session.job.clearance)
-}
-
-/// What is proven of bodies and the target; nothing without bodies.
-pub(super) fn beside_target(
-    session: Session,
-    texts: &mut ProgramTexts,
-    solid: &Result<Target, String>,
-) -> Result<Option<Proven>, JobError> {
-    let job = session.job;
-    if job.bodies.values().all(Vec::is_empty) {
-        return Ok(None);
-    }
-    let all = [(solid.as_ref().map_err(String::clone), None)];
-    let bodies = bodies(job, tolerance(session));
-    Ok(Some(kept_away(
-        session,
-        texts,
-        ("holder", "collision"),
-        &along(job, &bodies),
-        &all,
-    )?))
-}
-
-/// What is proven of cutters, of bodies and fixtures; nothing without these.
-pub(super) fn beside_fixtures(session: Session, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
-    let job = session.job;
-    let mut all = Vec::new();
-    for (setup, own) in job.setups.iter().enumerate() {
-        for fixture in &own.fixtures {
-            match solids::around(fixture, "a fixture") {
-                Ok(solids) => all.extend(solids.into_iter().map(|solid| (Ok(solid), Some(setup)))),
-                Err(reason) => all.push((Err(reason), Some(setup))),
-            }
-        }
-    }
-    if all.is_empty() {
-        return Ok(Vec::new());
-    }
-    let all: Vec<_> = all
-        .iter()
-        .map(|(solid, setup)| (solid.as_ref().map_err(String::clone), *setup))
-        .collect();
-    let mut solids = cutters(job, CHORDS * contact(job));
-    let bodies = bodies(job, tolerance(session));
-    let mut proven = Vec::new();
-    if clearance(session) > 0.0 && bodies.values().any(|own| !own.is_empty()) {
-        proven.push(kept_away(
-            session,
-            texts,
-            ("fixture", "fixture"),
-            &along(job, &bodies),
-            &all,
-        )?);
-    } else {
-        for (number, own) in bodies {
-            solids.entry(number).or_default().extend(own);
-        }
-    }
-    proven.insert(
-        0,
-        kept_out(session, texts, ("fixture", "fixture"), &along(job, &solids), &all)?,
-    );
-    Ok(proven)
-}
-
-pub(super) fn contact(job: &Job) -> f64 {
-    floor(job).max(CONTACT)
-}
-
-/// Concave outlines are replaced by chords within this.
-pub(super) fn tolerance(session: Session) -> f64 {
-    CHORDS * clearance(session).max(contact(session.job))
-}
+use sweepsim_proof::{Closest, Cutter, Enclosed, Target, closest, deepest, depth_claim, distance_claim};
 
 /// A solid, or why it is none, and the set-up that it is there in.
-type Obstacle<'a> = (Result<&'a Target, String>, Option<usize>);
+pub(super) type Obstacle<'a> = (Result<&'a Target, String>, Option<usize>);
 
-/// No body comes nearer to the solids than the clearance; or, without one, goes into them.
-fn kept_away(
-    session: Session,
+/// What is proven of something that moves beside solids.
+pub(super) fn beside(
+    proof: &Proof,
     texts: &mut ProgramTexts,
-    kinds: (&str, &str),
-    bodies: &[Cutter],
+    asked: &Asked,
     solids: &[Obstacle],
 ) -> Result<Proven, JobError> {
-    let (job, limit) = (session.job, clearance(session));
-    if limit <= 0.0 {
-        return kept_out(session, texts, kinds, bodies, solids);
-    }
-    let mut statement = Statement::new(kinds.0, limit);
-    statement.measure = Measure::Distance;
-    let wanted = Limits {
-        depth: limit,
-        width: WIDTH * limit,
-        pairs: pairs(job),
+    let kind = if asked.about == "holder" {
+        "collision"
+    } else {
+        asked.about
     };
-    let mut all: Option<Closest> = None;
-    for (solid, setup) in solids {
+    if asked.is_apart() {
+        kept_away(proof, texts, (asked, kind), solids)
+    } else {
+        kept_out(proof, texts, (asked, kind), solids)
+    }
+}
+
+/// No body comes nearer to the solids than the clearance.
+fn kept_away(
+    proof: &Proof,
+    texts: &mut ProgramTexts,
+    (asked, kind): (&Asked, &str),
+    solids: &[Obstacle],
+) -> Result<Proven, JobError> {
+    let (job, limit) = (proof.session.job, -asked.limit);
+    let mut statement = Statement::new(asked.about, limit);
+    statement.measure = Measure::Distance;
+    let (wanted, bodies) = (proof.asked.limits(asked), proof.asked.solids(asked));
+    let (mut all, mut claims): (Option<Closest>, _) = (None, Vec::new());
+    for (number, (solid, setup)) in solids.iter().enumerate() {
         match solid {
             Ok(solid) => {
-                let (numbers, own) = of_setup(job, bodies, *setup);
-                let mut found = closest(solid, &own, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
-                renumber(&mut found.nearest, &mut found.open, &mut found.moves, &numbers);
+                let movers = proof.asked.along(&bodies, *setup);
+                let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
+                let found = closest(solid, &own, &wanted, proof.recorded(), proof.session.monitor);
+                let mut found = found.ok_or(JobError::Cancelled)?;
+                claims.extend(proof.claim(asked, number, |scene, question| {
+                    distance_claim(scene, question, solid, &movers, &found)
+                }));
+                found.trees = Vec::new();
+                renumber(&mut found.nearest, &mut found.open, &mut found.moves, &movers);
                 all = Some(match all {
                     Some(all) => joined(all, found),
                     None => found,
@@ -157,7 +83,7 @@ fn kept_away(
         StatementState::Refuted => {
             statement.reason = None;
             for (path, witness) in &found.moves {
-                let mut own = finding(job, texts, kinds.1, *path, witness);
+                let mut own = finding(job, texts, kind, *path, witness);
                 own.near = witness.depth > 0.0;
                 own.body = body(job, own.tool);
                 findings.push(own);
@@ -170,31 +96,31 @@ fn kept_away(
         }
         _ => {}
     }
-    Ok(Proven::of(statement, findings))
+    Ok(Proven::of(statement, findings, claims))
 }
 
 /// Nothing goes into the solids.
 fn kept_out(
-    session: Session,
+    proof: &Proof,
     texts: &mut ProgramTexts,
-    (about, kind): (&str, &str),
-    movers: &[Cutter],
+    (asked, kind): (&Asked, &str),
     solids: &[Obstacle],
 ) -> Result<Proven, JobError> {
-    let (job, limit) = (session.job, contact(session.job));
+    let (job, about, limit) = (proof.session.job, asked.about, asked.limit);
     let mut statement = Statement::new(about, limit);
-    let wanted = Limits {
-        depth: limit,
-        width: 0.5 * limit,
-        pairs: pairs(job),
-    };
-    let mut all = Enclosed::default();
-    for (solid, setup) in solids {
+    let (wanted, all_solids) = (proof.asked.limits(asked), proof.asked.solids(asked));
+    let (mut all, mut claims) = (Enclosed::default(), Vec::new());
+    for (number, (solid, setup)) in solids.iter().enumerate() {
         match solid {
             Ok(solid) => {
-                let (numbers, own) = of_setup(job, movers, *setup);
-                let mut found = deepest(solid, &own, &wanted, session.monitor).ok_or(JobError::Cancelled)?;
-                renumber(&mut found.deepest, &mut found.open, &mut found.moves, &numbers);
+                let movers = proof.asked.along(&all_solids, *setup);
+                let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
+                let found = deepest(solid, &own, &wanted, proof.recorded(), proof.session.monitor);
+                let mut found = found.ok_or(JobError::Cancelled)?;
+                claims.extend(proof.claim(asked, number, |scene, question| {
+                    depth_claim(scene, question, solid, &movers, &found)
+                }));
+                renumber(&mut found.deepest, &mut found.open, &mut found.moves, &movers);
                 all.bound = all.bound.max(found.bound);
                 all.open.extend(found.open);
                 all.open_count += found.open_count;
@@ -227,7 +153,7 @@ fn kept_out(
             own.body = body(job, own.tool);
         }
     }
-    Ok(Proven::of(statement, findings))
+    Ok(Proven::of(statement, findings, claims))
 }
 
 /// Says which body it was, in a statement about bodies alone.
@@ -246,20 +172,18 @@ pub(super) fn body(job: &Job, tool: Option<u32>) -> Option<String> {
         .then(|| name_of(kind).to_owned())
 }
 
-/// What moves in a set-up, with the numbers of the paths.
-fn of_setup<'a>(job: &Job, movers: &[Cutter<'a>], setup: Option<usize>) -> (Vec<usize>, Vec<Cutter<'a>>) {
-    let own = |number: &usize| setup.is_none_or(|setup| job.paths[*number].setup == setup);
-    let numbers: Vec<usize> = (0..movers.len()).filter(own).collect();
-    let movers = numbers.iter().map(|number| movers[*number]).collect();
-    (numbers, movers)
-}
-
 type OfPath<T> = (usize, T);
 
-fn renumber<T, U>(extreme: &mut Option<OfPath<T>>, open: &mut [OfPath<U>], moves: &mut [OfPath<T>], numbers: &[usize]) {
+/// Gives what was found the numbers of paths.
+fn renumber<T, U>(
+    extreme: &mut Option<OfPath<T>>,
+    open: &mut [OfPath<U>],
+    moves: &mut [OfPath<T>],
+    movers: &[(usize, Cutter)],
+) {
     let paths = extreme.iter_mut().chain(moves).map(|(path, _)| path);
     for path in paths.chain(open.iter_mut().map(|(path, _)| path)) {
-        *path = numbers[*path];
+        *path = movers[*path].0;
     }
 }
 

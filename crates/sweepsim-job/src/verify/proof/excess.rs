@@ -1,18 +1,22 @@
 //! What is proven of what is left standing.
 
-use super::{CHORDS, LISTED, Proven, WIDTH, cutters, limits, pairs};
+use super::{LISTED, Proof, Proven};
 use crate::base::JobError;
-use crate::session::Session;
-use std::collections::BTreeMap;
+use crate::verify::asked::{Asked, limits};
 use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
-use sweepsim_proof::{Convex, Cutter, Limits, Target, highest};
+use sweepsim_proof::{Convex, Cutter, Target, height_claim, highest};
 
 /// If the lines have seen material that is left, how much is left has so many patches to be known better.
 const PATCHES: usize = 200_000;
 
 /// What is proven of excess. `is_seen`: whether some was seen on the lines.
-pub(super) fn excess(session: Session, solid: &Result<Target, String>, is_seen: bool) -> Result<Proven, JobError> {
-    let job = session.job;
+pub(super) fn excess(
+    proof: &Proof,
+    asked: &Asked,
+    solid: &Result<Target, String>,
+    is_seen: bool,
+) -> Result<Proven, JobError> {
+    let (session, job) = (proof.session, proof.session.job);
     let [least, most] = limits(job, |[_, excess]| excess);
     let mut statement = Statement::new("excess", least);
     statement.measure = Measure::Height;
@@ -23,16 +27,19 @@ pub(super) fn excess(session: Session, solid: &Result<Target, String>, is_seen: 
             return Ok(Proven::open(statement));
         }
     };
-    let cutters: BTreeMap<u32, Vec<Convex>> = cutters(job, CHORDS * least);
-    let along: Vec<Cutter> = super::along(job, &cutters);
-    let wanted = Limits {
-        depth: least,
-        width: WIDTH * least,
-        pairs: if is_seen { PATCHES } else { pairs(job) },
-    };
-    let left = highest(solid, &job.stock, &along, &wanted, session.monitor);
+    let cutters = proof.asked.solids(asked);
+    let movers = proof.asked.along(&cutters, None);
+    let along: Vec<Cutter> = movers.iter().map(|(_, cutter)| *cutter).collect();
+    let mut wanted = proof.asked.limits(asked);
+    if is_seen {
+        wanted.pairs = PATCHES;
+    }
+    let left = highest(solid, &job.stock, &along, &wanted, proof.recorded(), session.monitor);
     let left = left.map_err(|error| session.failure(format!("stock: {error}")))?;
     let left = left.ok_or(JobError::Cancelled)?;
+    let claims = proof.claim(asked, 0, |scene, question| {
+        height_claim(scene, question, &movers, &left)
+    });
     let known = left.highest.map_or(0.0, |(_, height)| height);
     statement.enclosure = [known, left.bound.min(f64::MAX)];
     statement.state = if left.bound <= least {
@@ -78,5 +85,5 @@ pub(super) fn excess(session: Session, solid: &Result<Target, String>, is_seen: 
         }
         _ => {}
     }
-    Ok(Proven::of(statement, findings))
+    Ok(Proven::of(statement, findings, claims))
 }

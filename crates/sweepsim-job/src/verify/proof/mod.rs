@@ -3,18 +3,18 @@
 mod bodies;
 mod excess;
 mod process;
-mod solids;
+pub(super) mod solids;
 
-use super::asked::{Asked, CHORDS, WIDTH, along, cutters, floor, limits, pairs};
-use super::certificate::Certified;
+use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::session::Session;
+use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
 use sweepsim_formats::{
     Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
 };
-use sweepsim_proof::{Enclosed, OpenBox, Target, Witness, deepest_recorded};
+use sweepsim_proof::{Cutter, Enclosed, OpenBox, Target, Witness, deepest, depth_claim};
 
 /// As many open places are listed.
 const LISTED: usize = 100;
@@ -23,12 +23,50 @@ const LISTED: usize = 100;
 struct Proven {
     statement: Statement,
     findings: Vec<ReportedFinding>,
-    /// For whoever wants to check it.
-    certified: Option<Certified>,
+    /// For whoever wants to check it: answers to some of the questions, by their numbers.
+    claims: Vec<(usize, Claim)>,
+}
+
+/// What can be checked: the digest of what was asked, and an answer to each question, where there is one.
+#[derive(Clone, Debug)]
+pub(crate) struct Certified {
+    pub scene: String,
+    pub claims: Vec<Option<Claim>>,
 }
 
 /// Statements, the findings that break them, and what can be checked of them.
-type All = (Vec<Statement>, Vec<ReportedFinding>, Vec<Certified>);
+type All = (Vec<Statement>, Vec<ReportedFinding>, Option<Certified>);
+
+/// What is asked, and in which request.
+struct Proof<'a> {
+    session: Session<'a>,
+    asked: AskedAll<'a>,
+    scene: Scene,
+}
+
+impl Proof<'_> {
+    /// Whether proofs are kept for a checker.
+    #[allow(clippy::unused_self)]
+    fn recorded(&self) -> bool {
+        true
+    }
+
+    /// An answer to the question that asks a statement of one of its obstacles.
+    fn claim(
+        &self,
+        asked: &Asked,
+        obstacle: usize,
+        claim: impl Fn(&Scene, &Question) -> Option<Claim>,
+    ) -> Vec<(usize, Claim)> {
+        let is_asked = |question: &Question| {
+            (question.about == asked.about && question.limit == asked.limit)
+                && question.solid == asked.obstacles[obstacle]
+        };
+        let number = self.scene.questions.iter().position(is_asked);
+        let claim = number.and_then(|number| Some((number, claim(&self.scene, &self.scene.questions[number])?)));
+        claim.into_iter().collect()
+    }
+}
 
 /// What is proven, what was seen to break it but not on the lines, and what can be checked.
 ///
@@ -39,25 +77,50 @@ pub(super) fn statements(
     (seen, is_left): (&[ReportedFinding], bool),
 ) -> Result<All, JobError> {
     session.phase("proof");
-    let job = session.job;
+    let asked = AskedAll::new(session.job, session.request);
+    let proof = Proof {
+        session,
+        scene: asked.scene(),
+        asked,
+    };
+    let solid_of = |number: usize, obstacle: &super::asked::Obstacle| {
+        let what = match obstacle.setup {
+            None => "the target",
+            Some(_) => "a fixture",
+        };
+        let solid = obstacle.triangles.as_ref().map_err(String::clone);
+        (
+            number,
+            solid.and_then(|soup| solids::of_mesh(soup, what)),
+            obstacle.setup,
+        )
+    };
+    let obstacles = proof.asked.obstacles.iter().enumerate();
+    let solids: Vec<_> = obstacles.map(|(number, own)| solid_of(number, own)).collect();
     let mut all = Vec::new();
-    if let Some(target) = &job.target {
-        let solid = solids::of_mesh(&target.mesh, "the target");
-        all.push(gouges(session, texts, &solid)?);
-        if super::directions::compared(session) {
-            all.push(excess::excess(session, &solid, is_left)?);
-        }
-        all.extend(bodies::beside_target(session, texts, &solid)?);
+    for asked in &proof.asked.statements {
+        let own = asked.obstacles.iter().map(|number| &solids[*number]);
+        let own: Vec<_> = own
+            .map(|(_, solid, setup)| (solid.as_ref().map_err(String::clone), *setup))
+            .collect();
+        all.push(match (asked.about, asked.measure) {
+            ("gouge", _) => gouges(&proof, texts, asked, &solids[0].1)?,
+            (_, Measured::Height) => excess::excess(&proof, asked, &solids[0].1, is_left)?,
+            _ => bodies::beside(&proof, texts, asked, &own)?,
+        });
     }
-    all.extend(bodies::beside_fixtures(session, texts)?);
-    all.extend(process::beside_stock(session, texts)?);
-    let (mut statements, mut findings, mut all_certified) = (Vec::new(), Vec::new(), Vec::new());
+    all.extend(process::beside_stock(&proof, texts)?);
+    let (mut statements, mut findings) = (Vec::new(), Vec::new());
+    let mut claims: Vec<Option<Claim>> = proof.scene.questions.iter().map(|_| None).collect();
     for Proven {
         statement,
         findings: own,
-        certified,
+        claims: answers,
     } in all
     {
+        for (number, claim) in answers {
+            claims[number] = Some(claim);
+        }
         // What the lines have seen is known better from them.
         let is_new = |own: &ReportedFinding| {
             let same = |other: &ReportedFinding| {
@@ -67,14 +130,22 @@ pub(super) fn statements(
         };
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
-        all_certified.extend(certified);
     }
-    Ok((statements, findings, all_certified))
+    let certified = claims.iter().any(Option::is_some).then(|| Certified {
+        scene: proof.scene.digest(),
+        claims,
+    });
+    Ok((statements, findings, certified))
 }
 
 /// What is proven of gouges.
-fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, String>) -> Result<Proven, JobError> {
-    let job = session.job;
+fn gouges(
+    proof: &Proof,
+    texts: &mut ProgramTexts,
+    asked: &Asked,
+    solid: &Result<Target, String>,
+) -> Result<Proven, JobError> {
+    let job = proof.session.job;
     let [least, most] = limits(job, |[gouge, _]| gouge);
     let mut statement = Statement::new("gouge", least);
     let solid = match solid {
@@ -84,10 +155,20 @@ fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, Str
             return Ok(Proven::open(statement));
         }
     };
-    let asked = Asked::new(job);
-    let own: Vec<_> = asked.cutters(job).into_iter().map(|(_, cutter)| cutter).collect();
-    let found = deepest_recorded(solid, &own, &asked.limits, session.monitor).ok_or(JobError::Cancelled)?;
-    let certified = Certified::new(job, solid, &asked, &found);
+    let solids = proof.asked.solids(asked);
+    let movers = proof.asked.along(&solids, None);
+    let own: Vec<Cutter> = movers.iter().map(|(_, cutter)| *cutter).collect();
+    let found = deepest(
+        solid,
+        &own,
+        &proof.asked.limits(asked),
+        proof.recorded(),
+        proof.session.monitor,
+    );
+    let found = found.ok_or(JobError::Cancelled)?;
+    let claims = proof.claim(asked, 0, |scene, question| {
+        depth_claim(scene, question, solid, &movers, &found)
+    });
     let findings = deep(job, texts, &mut statement, &found, most);
     let between = statement.state == StatementState::Open && statement.enclosure[0] > least;
     if between {
@@ -96,7 +177,7 @@ fn gouges(session: Session, texts: &mut ProgramTexts, solid: &Result<Target, Str
     Ok(Proven {
         statement,
         findings,
-        certified,
+        claims,
     })
 }
 
@@ -132,15 +213,14 @@ fn deep(
 
 impl Proven {
     fn open(statement: Statement) -> Self {
-        Self::of(statement, Vec::new())
+        Self::of(statement, Vec::new(), Vec::new())
     }
 
-    /// Nothing of it can be checked by others.
-    fn of(statement: Statement, findings: Vec<ReportedFinding>) -> Self {
+    fn of(statement: Statement, findings: Vec<ReportedFinding>, claims: Vec<(usize, Claim)>) -> Self {
         Self {
             statement,
             findings,
-            certified: None,
+            claims,
         }
     }
 }

@@ -1,42 +1,33 @@
 //! What is proven of the stock as it is at each time: shanks and holders beside it, and rapids through it. As rapids
 //! count all moves that must not cut: with the spindle stopped, or before the first feed.
 
-use super::bodies::{bodies, body, clearance, contact, tolerance};
-use super::{CHORDS, LISTED, Proven, cutters, described, finding, place};
+use super::bodies::body;
+use super::{LISTED, Proof, Proven, described, finding, place};
 use crate::base::JobError;
-use crate::session::Session;
+use crate::verify::asked::Moving;
 use crate::verify::scope::is_guessed;
 use crate::verify::texts::ProgramTexts;
 use std::collections::BTreeMap;
 use sweepsim_formats::{Job, JobPath, Measure, Statement, StatementState};
-use sweepsim_proof::{Convex, Cutter, Movers, Room, Touched, Work, touched};
-
-/// The most parts that are looked at in a statement: so many, and so many for each move.
-const PARTS: usize = 200_000;
-const PARTS_OF_MOVE: usize = 100;
-/// Segments are so near to their path, as a share of the room.
-const DEVIATION: f64 = 0.5e-3;
+use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, touched};
 
 /// What is proven of bodies and rapids beside the stock; nothing of a stock that was guessed.
-pub(super) fn beside_stock(session: Session, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
-    let job = session.job;
-    if is_guessed(session) {
+pub(super) fn beside_stock(proof: &Proof, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
+    let job = proof.session.job;
+    if is_guessed(proof.session) {
         return Ok(Vec::new());
     }
     let solids = Solids {
-        cutters: cutters(job, CHORDS * contact(job)),
-        bodies: bodies(job, tolerance(session)),
+        cutters: proof.asked.beside_stock(Moving::Cutters),
+        bodies: proof.asked.beside_stock(Moving::Bodies),
     };
+    let must_not_cut = |path: &JobPath| (0..path.path.moves()).any(|number| kept_from(path, number).is_some());
     let mut all = Vec::new();
-    if job
-        .paths
-        .iter()
-        .any(|path| (0..path.path.moves()).any(|number| path.rapid.get(number)))
-    {
-        all.push(judged(session, texts, &solids, Movers::Rapids)?);
+    if job.paths.iter().any(must_not_cut) {
+        all.push(judged(proof, texts, &solids, Movers::Rapids)?);
     }
     if job.bodies.values().any(|own| !own.is_empty()) {
-        all.push(judged(session, texts, &solids, Movers::Bodies)?);
+        all.push(judged(proof, texts, &solids, Movers::Bodies)?);
     }
     Ok(all)
 }
@@ -62,41 +53,27 @@ fn of_tool(all: &BTreeMap<u32, Vec<Convex>>, tool: u32) -> &[Convex] {
     all.get(&tool).map_or(&[], Vec::as_slice)
 }
 
-fn judged(session: Session, texts: &mut ProgramTexts, solids: &Solids, movers: Movers) -> Result<Proven, JobError> {
-    let job = session.job;
-    let (about, wanted) = match movers {
-        Movers::Bodies => ("collision", clearance(session)),
-        Movers::Rapids => ("rapid", 0.0),
-    };
-    let (limit, distance) = match wanted > 0.0 {
-        true => (wanted, wanted),
-        false => (contact(job), -contact(job)),
-    };
-    let is_rapid = job
-        .paths
-        .iter()
-        .map(|path| |number: usize| kept_from(path, number).is_some());
-    let is_rapid: Vec<_> = is_rapid.collect();
-    let work = job.paths.iter().zip(&is_rapid).map(|(path, is_rapid)| Work {
-        cutter: Cutter {
-            solids: of_tool(&solids.cutters, path.tool),
-            path: &path.path,
-            others: Some(&path.other_courses),
-        },
+fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Movers) -> Result<Proven, JobError> {
+    let (session, job) = (proof.session, proof.session.job);
+    let must_not_cut = job.paths.iter();
+    let must_not_cut = must_not_cut.map(|path| |number: usize| kept_from(path, number).is_some());
+    let must_not_cut: Vec<_> = must_not_cut.collect();
+    let work = job.paths.iter().zip(&must_not_cut).map(|(path, is_rapid)| Work {
+        cutter: proof.asked.cutter(path, of_tool(&solids.cutters, path.tool)),
         bodies: of_tool(&solids.bodies, path.tool),
         is_rapid,
     });
     let work: Vec<Work> = work.collect();
-    let room = Room {
-        distance,
-        deviation: DEVIATION * limit,
-        parts: PARTS + PARTS_OF_MOVE * job.moves(),
-    };
+    let room = proof.asked.room(movers);
     let found = touched(&job.stock, &work, movers, &room, session.monitor);
     let found = found.map_err(|error| session.failure(format!("stock: {error}")))?;
     let found = found.ok_or(JobError::Cancelled)?;
-    let mut statement = Statement::new(about, limit);
-    if wanted > 0.0 {
+    let about = match movers {
+        Movers::Bodies => "collision",
+        Movers::Rapids => "rapid",
+    };
+    let mut statement = Statement::new(about, room.distance.abs());
+    if room.distance > 0.0 {
         statement.measure = Measure::Distance;
     }
     Ok(said(job, texts, statement, &found, solids))
@@ -104,12 +81,9 @@ fn judged(session: Session, texts: &mut ProgramTexts, solids: &Solids, movers: M
 
 fn said(job: &Job, texts: &mut ProgramTexts, mut statement: Statement, found: &Touched, solids: &Solids) -> Proven {
     let is_distance = statement.measure == Measure::Distance;
-    let depths = |moves: &[_]| -> Option<(usize, sweepsim_proof::Witness)> {
-        let of =
-            |(_, witness): &&(usize, sweepsim_proof::Witness)| if is_distance { -witness.depth } else { witness.depth };
-        moves.iter().max_by(|a, b| of(a).total_cmp(&of(b))).cloned()
-    };
-    let worst = depths(&found.moves);
+    let order = |witness: &Witness| if is_distance { -witness.depth } else { witness.depth };
+    let worst = found.moves.iter();
+    let worst = worst.max_by(|(_, a), (_, b)| order(a).total_cmp(&order(b))).cloned();
     let is_known = found.open_count == 0 && worst.is_none();
     statement.state = match &worst {
         Some(_) => StatementState::Refuted,

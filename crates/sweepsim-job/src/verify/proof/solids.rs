@@ -42,22 +42,22 @@ fn faulty(solid: &Target, what: &str) -> Option<String> {
     Some(format!("{what} {}", named.join(", ")))
 }
 
-/// Solids that cover a fixture, or why there are none.
-pub(super) fn around(fixture: &Stock, what: &str) -> Result<Vec<Target>, String> {
+/// Triangles of solids that cover a fixture, or why there are none.
+pub(in crate::verify) fn around(fixture: &Stock, what: &str) -> Result<Vec<TriangleSoup>, String> {
     match fixture {
-        Stock::Block { min, max } => Ok(vec![of_mesh(&TriangleSoup::block(*min, *max), what)?]),
+        Stock::Block { min, max } => Ok(vec![TriangleSoup::block(*min, *max)]),
         Stock::Cylinder {
             base,
             axis,
             radius,
             height,
-        } => Ok(vec![of_mesh(&prism(*base, *axis, *radius, *height), what)?]),
+        } => Ok(vec![prism(*base, *axis, *radius, *height)]),
         Stock::Ball { centre, radius } => {
             let low = centre.map(|c| c - radius);
             let high = centre.map(|c| c + radius);
-            Ok(vec![of_mesh(&TriangleSoup::block(low, high), what)?])
+            Ok(vec![TriangleSoup::block(low, high)])
         }
-        Stock::Mesh(mesh) => Ok(vec![of_mesh(mesh, what)?]),
+        Stock::Mesh(mesh) => Ok(vec![mesh.clone()]),
         Stock::Union(parts) => {
             let all = parts.iter().map(|part| around(part, what));
             Ok(all.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())

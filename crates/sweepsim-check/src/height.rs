@@ -1,0 +1,181 @@
+//! Why nothing that hangs together with a solid stands higher above it than `d`.
+//!
+//! Let `Σ` be all points at the distance `d` from the solid, on the outside. If none of them is left of the stock, what
+//! is farther does not hang together with the solid: a way there would cross `Σ`. [Patches](crate::patch) have all of
+//! `Σ`. A tree divides each of them, and gives for each part a reason:
+//!
+//! - **Flat**: it need not be looked at.
+//! - **Outside**: nothing of its hull is in the stock. The stock is in convex regions; of each, the hull of the points is
+//!   beyond a plane, or cut off at its first planes until nothing is left.
+//! - **Removed**: of what is left so, all points are in one convex part of a tool at one time; or each at some time of a
+//!   straight stretch, along which a convex solid sweeps a convex one. So their hull was removed.
+//! - **Near**: all points are nearer to one triangle than `d`. That is convex, too: so it is not in `Σ`.
+//!
+//! All this holds by a [margin](crate::Scene::margin), which is larger than roundings, what is flat, and what motions
+//! deviate by.
+
+use crate::motion::{Placement, Stretch};
+use crate::patch::Patch;
+use crate::scene::Scene;
+use crate::surface::{Surface, nearest_of};
+use crate::tool::Body;
+use crate::vector::{V3, add, dot, norm, norm_up, scaled, sub};
+use crate::walk::{DEEPEST, Found, Reader};
+
+/// All that is needed of a question about a height.
+pub(crate) struct Left<'a> {
+    pub scene: &'a Scene,
+    pub surface: &'a Surface,
+    /// The solids of each mover, and the motions that it certainly makes: numbers of the path's.
+    pub movers: Vec<(&'a [Body], usize, Vec<usize>)>,
+    pub distance: f64,
+}
+
+/// Regions are cut at so many of their planes.
+const CUT: usize = 6;
+/// Steps of a search for a time.
+const STEPS: usize = 40;
+
+impl Left<'_> {
+    /// Looks at some patches and their trees.
+    pub fn walked(&self, patches: &[Patch], bytes: &[u8]) -> Found {
+        let (mut reader, mut found) = (Reader(bytes), Found::nothing());
+        for patch in patches {
+            if self.node(patch, &mut reader, &mut found, 0).is_none() {
+                found.fail(None, around(&patch.corners), "the tree ends early, or is none");
+                return found;
+            }
+        }
+        if !reader.0.is_empty() {
+            found.fail(None, [[0.0; 3]; 2], "something comes after the tree");
+        }
+        found.bound = self.distance;
+        found
+    }
+
+    /// `None` if the tree cannot be read.
+    fn node(&self, patch: &Patch, reader: &mut Reader, found: &mut Found, depth: usize) -> Option<()> {
+        found.nodes += 1;
+        let kind = reader.byte().filter(|_| depth < DEEPEST)?;
+        let parts = match kind {
+            // Of corners, then of normals: 0 and 1, 0 and 2, 1 and 2.
+            10..16 => {
+                let pair = [[0, 1], [0, 2], [1, 2]][usize::from(kind - 10) % 3];
+                patch.halves(kind >= 13, pair)?.to_vec()
+            }
+            16 => patch.threes(),
+            _ => {
+                let holds = self.holds(patch, kind, reader)?;
+                if !holds {
+                    found.fail(None, around(&patch.corners), "something may be left there");
+                }
+                return Some(());
+            }
+        };
+        parts
+            .iter()
+            .try_for_each(|part| self.node(part, reader, found, depth + 1))
+    }
+
+    /// Whether a reason holds. `None` if there is no such.
+    fn holds(&self, patch: &Patch, kind: u8, reader: &mut Reader) -> Option<bool> {
+        if kind == 0 {
+            return Some(patch.is_flat);
+        }
+        let points = patch.points(self.distance).map_or(Vec::new(), |(points, _)| points);
+        let is_known = !points.is_empty();
+        let within = self.within(&points);
+        let holds = match kind {
+            1 => within.is_empty(),
+            2 => {
+                let triangle = self.surface.triangles.get(reader.number()?)?;
+                let near = |p: &V3| norm_up(&sub(p, &nearest_of(triangle, p))) < self.distance - self.scene.margin;
+                points.iter().all(near)
+            }
+            3 => {
+                let (mover, solid, motion) = (reader.number()?, reader.number()?, reader.number()?);
+                let (bodies, path, certain) = self.movers.get(mover)?;
+                let (body, motion) = (bodies.get(solid)?, *certain.get(motion)?);
+                let stretch = Stretch::new(&self.scene.paths[*path][motion])?;
+                let time = if stretch.is_straight() {
+                    None
+                } else {
+                    Some(reader.float()?)
+                };
+                within.iter().all(|p| self.removes(body, &stretch, time, p))
+            }
+            _ => return None,
+        };
+        Some(holds && is_known)
+    }
+
+    /// Points whose hull has all of the stock that is in the hull of some.
+    fn within(&self, points: &[V3]) -> Vec<V3> {
+        let margin = self.scene.margin;
+        let mut all = Vec::new();
+        for region in &self.scene.stock {
+            if region
+                .iter()
+                .any(|(n, c)| points.iter().all(|p| dot(n, p) > c + margin))
+            {
+                continue;
+            }
+            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| below(points, |p| dot(n, p) - (c + margin));
+            all.extend(region.iter().take(CUT).fold(points.to_vec(), cut));
+        }
+        all
+    }
+
+    /// Whether a point is in a solid at a time, or at some time of a straight stretch.
+    fn removes(&self, body: &Body, stretch: &Stretch, time: Option<f64>, p: &V3) -> bool {
+        let of = |t: f64| off(body, &stretch.at(t), p, self.scene.margin);
+        if let Some(time) = time {
+            return (0.0..=1.0).contains(&time) && of(time) <= 0.0;
+        }
+        // The time at which it is nearest to the axis; if the solid also rises, the best one is near.
+        let [from, to] = &stretch.ends;
+        let way = sub(&to.tip, &from.tip);
+        let across = sub(&way, &scaled(&from.axis, dot(&way, &from.axis)));
+        let near = dot(&sub(p, &from.tip), &across) / dot(&across, &across).max(f64::MIN_POSITIVE);
+        if [near.clamp(0.0, 1.0), 0.0, 1.0].iter().any(|t| of(*t) <= 0.0) {
+            return true;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..STEPS {
+            let third = (high - low) / 3.0;
+            let (a, b) = (of(low + third), of(high - third));
+            if a.min(b) <= 0.0 {
+                return true;
+            }
+            if a < b { high -= third } else { low += third }
+        }
+        false
+    }
+}
+
+/// How far a point is outside of a solid: not more than 0 if it is inside by a margin.
+pub(crate) fn off(body: &Body, at: &Placement, p: &V3, margin: f64) -> f64 {
+    let from = sub(p, &at.tip);
+    let along = dot(&from, &at.axis);
+    let across = norm(&sub(&from, &scaled(&at.axis, along)));
+    let margin = margin + at.tip_error + 4.0 * at.axis_error * norm(&from);
+    body.off([across, along], margin).unwrap_or(f64::INFINITY)
+}
+
+/// Points whose hull is what of the hull of some points is below a plane. `above`: how far one is above it.
+fn below(points: Vec<V3>, above: impl Fn(&V3) -> f64) -> Vec<V3> {
+    let (low, high): (Vec<V3>, Vec<V3>) = points.into_iter().partition(|p| above(p) <= 0.0);
+    let mut kept = low.clone();
+    for a in &low {
+        kept.extend(
+            high.iter()
+                .map(|b| add(a, &scaled(&sub(b, a), -above(a) / (above(b) - above(a))))),
+        );
+    }
+    kept
+}
+
+fn around(points: &[V3]) -> [V3; 2] {
+    let of = |pick: fn(f64, f64) -> f64| [0, 1, 2].map(|k| points.iter().map(|p| p[k]).reduce(pick).unwrap_or(0.0));
+    [of(f64::min), of(f64::max)]
+}

@@ -1,0 +1,258 @@
+//! Tools of revolution, as convex solids that cover them, and what is certainly inside of a tool.
+//!
+//! **Cover.** A point of a tool has a point of the outline as high and no nearer to the axis. So it is in the hull of
+//! any set that holds that part of the outline, and of the axis beside it, turned about the axis. A certificate says
+//! which curves of the outline make one solid, or into how many parts a curve is cut; the solids are made here.
+//!
+//! **Inside.** If the outline never falls, the tool is all that is nearer to the axis than it. Where consecutive lines
+//! and arcs of it turn left, the tool beside them is convex: what is between points in it is in it.
+
+use crate::scene::{Curve, Outline};
+use crate::vector::{EPS, MORE, V3, dot, norm, scaled, sub};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+pub(crate) type P2 = [f64; 2];
+
+/// The hull of corners and arcs `(ρ, ζ)`, turned about the axis.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Body {
+    corners: Vec<P2>,
+    arcs: Vec<Arc>,
+    /// No point is farther from the tip.
+    pub reach: f64,
+    /// The lowest and the highest `ζ`.
+    pub heights: [f64; 2],
+    /// The curves that it is the hull of, if it is part of the tool.
+    curves: Vec<Curve>,
+}
+
+/// An arc of at most 90°.
+#[derive(Clone, Debug)]
+struct Arc {
+    centre: P2,
+    radius: f64,
+    /// The unit normals at its ends, counter-clockwise.
+    normals: [P2; 2],
+}
+
+fn dot2(a: P2, b: P2) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross2(a: P2, b: P2) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The solids of a tool, for each entry of a cover: so many curves together, or one in so many parts.
+pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body>, String> {
+    let (mut all, mut at) = (Vec::new(), 0_usize);
+    let rises = outline
+        .iter()
+        .all(|curve| directions(curve).is_some_and(|ends| ends.iter().all(|d| d[1] >= -STRAIGHT)));
+    for [count, parts] in cover {
+        let end = at.saturating_add(*count);
+        let curves = outline.get(at..end).ok_or("a cover has more curves than its tool")?;
+        for part in 0..*parts {
+            let mut body = Body::default();
+            for curve in curves {
+                body.add(curve, part, *parts)
+                    .ok_or("a curve of a tool is none, or is not cut into enough parts")?;
+            }
+            if *parts == 1 && rises && turns_left(curves) {
+                body.curves = curves.to_vec();
+            }
+            all.push(body.closed().ok_or("a solid of a tool is none")?);
+        }
+        at = if *parts == 1 || *parts > 1 && *count == 1 {
+            end
+        } else {
+            usize::MAX
+        };
+    }
+    (at == outline.len() && !all.is_empty())
+        .then_some(all)
+        .ok_or("a cover does not cover its tool".into())
+}
+
+/// Angles that differ by less are the same: what this is off by is within any [margin](crate::Scene::margin).
+const STRAIGHT: f64 = 1e-9;
+
+/// The directions of a line, or of an arc, at its ends.
+fn directions(curve: &Curve) -> Option<[P2; 2]> {
+    match curve {
+        Curve::Bezier(controls) => {
+            let [(from, _), (to, _)] = controls[..] else {
+                return None;
+            };
+            let way = [to[0] - from[0], to[1] - from[1]];
+            let length = way[0].hypot(way[1]);
+            (length > 0.0).then_some([way.map(|c| c / length); 2])
+        }
+        Curve::Arc { angles, .. } => {
+            let way = (angles[1] - angles[0]).signum();
+            ((angles[1] - angles[0]).abs() <= PI + STRAIGHT).then_some(angles.map(|a| [-way * a.sin(), way * a.cos()]))
+        }
+    }
+}
+
+/// Whether lines and arcs turn left all the way. They never fall, so their directions go from 0° to 180°.
+fn turns_left(curves: &[Curve]) -> bool {
+    let ends: Option<Vec<P2>> = curves
+        .iter()
+        .map(directions)
+        .collect::<Option<Vec<_>>>()
+        .map(|all| all.concat());
+    let rising = |curve: &Curve| !matches!(curve, Curve::Arc { angles, .. } if angles[1] <= angles[0]);
+    ends.is_some_and(|all| all.windows(2).all(|pair| cross2(pair[0], pair[1]) >= -STRAIGHT))
+        && curves.iter().all(rising)
+}
+
+impl Body {
+    /// One of the parts of a curve.
+    fn add(&mut self, curve: &Curve, part: usize, parts: usize) -> Option<()> {
+        let [from, to] = [part, part + 1].map(|k| k as f64 / parts as f64);
+        match curve {
+            Curve::Bezier(controls) => {
+                let last = if to == 1.0 {
+                    controls.clone()
+                } else {
+                    halves(controls, to)[0].clone()
+                };
+                let own = if from == 0.0 {
+                    last
+                } else {
+                    halves(&last, from / to)[1].clone()
+                };
+                self.corners.extend(own.iter().map(|(point, _)| *point));
+                (!own.is_empty() && controls.iter().all(|(_, weight)| *weight > 1e-6)).then_some(())
+            }
+            Curve::Arc { centre, radius, angles } => {
+                let at = |angle: f64, r: f64| [centre[0] + r * angle.cos(), centre[1] + r * angle.sin()];
+                let [from, to] = [from, to].map(|t| angles[0] + (angles[1] - angles[0]) * t);
+                if to <= from {
+                    // It is between its chord and the lines that touch it at its ends.
+                    let (middle, half) = (0.5 * (from + to), 0.5 * (from - to));
+                    self.corners
+                        .extend([at(from, *radius), at(middle, radius / half.cos()), at(to, *radius)]);
+                    return (half < 0.8 && *radius > 0.0).then_some(());
+                }
+                let count = ((to - from) / FRAC_PI_2 - 1e-9).ceil().max(1.0);
+                let normal = |k: f64| {
+                    let angle = from + (to - from) * k / count;
+                    [angle.cos(), angle.sin()]
+                };
+                for k in 0..count.min(5.0) as usize {
+                    let normals = [normal(k as f64), normal((k + 1) as f64)];
+                    self.corners
+                        .extend(normals.map(|n| [0, 1].map(|i| centre[i] + radius * n[i])));
+                    self.arcs.push(Arc {
+                        centre: *centre,
+                        radius: *radius,
+                        normals,
+                    });
+                }
+                (count < 5.0 && *radius > 0.0).then_some(())
+            }
+        }
+    }
+
+    /// With the axis beside it.
+    fn closed(mut self) -> Option<Self> {
+        let corners = self.corners.iter().map(|p| p[0].hypot(p[1]));
+        let arcs = self
+            .arcs
+            .iter()
+            .map(|arc| arc.centre[0].hypot(arc.centre[1]) + arc.radius);
+        self.reach = corners.chain(arcs).fold(0.0, f64::max) * MORE;
+        self.heights = [-self.meridian([0.0, -1.0], 1.0), self.meridian([0.0, 1.0], 1.0)];
+        self.corners.extend(self.heights.map(|height| [0.0, height]));
+        let is_good = self.reach.is_finite() && self.corners.iter().all(|p| p[0] >= -8.0 * EPS * self.reach);
+        is_good.then_some(self)
+    }
+
+    /// How far it reaches along `n`, from the tip: not less than the largest `⟨n, x⟩`. `error`: of the axis.
+    ///
+    /// With the parts `α` along and `β ≥ 0` across the axis, that is the largest `β ρ + α ζ`. It changes no
+    /// faster than `reach` times the direction; `α` and `β` are off by twice the error of the axis, and by
+    /// roundings, as the corners are.
+    pub fn support_up(&self, n: &V3, axis: &V3, error: f64) -> f64 {
+        let along = dot(n, axis);
+        let length = norm(n);
+        let own = [norm(&sub(n, &scaled(axis, along))), along];
+        self.meridian(own, length) + self.reach * length * (4.0 * error + 96.0 * EPS)
+    }
+
+    fn meridian(&self, d: P2, length: f64) -> f64 {
+        let corners = self.corners.iter().map(|corner| dot2(d, *corner));
+        let mut best = corners.fold(f64::NEG_INFINITY, f64::max);
+        for arc in &self.arcs {
+            let [from, to] = arc.normals;
+            let near = -1e-12 * length;
+            // The whole circle reaches at least as far: the test need not be exact, if it is wide enough.
+            if cross2(from, d) >= near && cross2(d, to) >= near && dot2(d, from) + dot2(d, to) > 0.0 {
+                best = best.max(dot2(d, arc.centre) + arc.radius * length);
+            }
+        }
+        best
+    }
+
+    /// More than 0 if a point is in the tool by less than `margin`, or is not known to be; it grows with how far it is
+    /// outside. `None` of a solid that is no part of the tool.
+    pub fn off(&self, [rho, zeta]: P2, margin: f64) -> Option<f64> {
+        let [low, high] = self.heights;
+        let beyond = (low - zeta).max(zeta - high) + margin;
+        let clamped = [zeta - margin, zeta + margin].map(|zeta| zeta.clamp(low, high));
+        let width = clamped
+            .map(|zeta| self.width(zeta))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        (!self.curves.is_empty()).then_some(beyond.max(rho + margin - width))
+    }
+
+    /// How far the curves are from the axis at a height.
+    fn width(&self, zeta: f64) -> f64 {
+        let own = |curve: &Curve| match curve {
+            Curve::Bezier(controls) => {
+                let ([r, from], [s, to]) = (controls[0].0, controls[controls.len() - 1].0);
+                let at = if to > from {
+                    r + (s - r) * (zeta - from) / (to - from)
+                } else {
+                    r.max(s)
+                };
+                if from <= zeta && zeta <= to {
+                    at
+                } else {
+                    f64::NEG_INFINITY
+                }
+            }
+            Curve::Arc { centre, radius, angles } => {
+                let height = (zeta - centre[1]) / radius;
+                // Where curves meet, one of them has the height, whatever rounding says.
+                let is_there = angles[0].sin() - 1e-12 <= height && height <= angles[1].sin() + 1e-12;
+                if is_there {
+                    centre[0] + radius * (1.0 - height * height).max(0.0).sqrt()
+                } else {
+                    f64::NEG_INFINITY
+                }
+            }
+        };
+        self.curves.iter().map(own).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Both parts of a rational Bézier curve (de Casteljau).
+fn halves(controls: &[(P2, f64)], t: f64) -> [Vec<(P2, f64)>; 2] {
+    let (mut row, mut low, mut high) = (controls.to_vec(), Vec::new(), Vec::new());
+    while let (Some(first), Some(last)) = (row.first(), row.last()) {
+        low.push(*first);
+        high.push(*last);
+        let between = |pair: &[(P2, f64)]| {
+            let [(p, v), (q, w)] = [pair[0], pair[1]];
+            let [v, w] = [v * (1.0 - t), w * t];
+            ([0, 1].map(|k| (p[k] * v + q[k] * w) / (v + w)), v + w)
+        };
+        row = row.windows(2).map(between).collect();
+    }
+    high.reverse();
+    [low, high]
+}

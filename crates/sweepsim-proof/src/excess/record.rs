@@ -1,0 +1,134 @@
+//! What a search leaves behind for a checker: of each patch of the surface, a tree.
+//!
+//! A node is a byte, and what belongs to it; both parts of a division, or all of them, follow.
+//!
+//! | byte | node |
+//! | --- | --- |
+//! | 0 | Nothing is there: an edge or a corner that turns inwards, or none. |
+//! | 1 | Outside of the stock. |
+//! | 2 | Nearer to a triangle: its number. |
+//! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
+//! | 10, 11, 12 | Halved between the corners 0 and 1, 0 and 2, or 1 and 2. |
+//! | 13, 14, 15 | The same of normals. |
+//! | 16 | For any three of its normals. |
+
+use super::removed::Holder;
+use super::surface::{Halved, Patch};
+use smallvec::SmallVec;
+
+/// The trees of some patches of the surface: the first, how many, and the bytes.
+pub type PatchTrees = (usize, usize, Vec<u8>);
+
+/// So many patches have their trees together.
+const TOGETHER: usize = 4096;
+
+/// A step of a tree whose parts are searched for themselves.
+#[derive(Clone, Copy)]
+pub(super) enum Step {
+    /// A patch of the surface begins.
+    Begin,
+    Byte(u8),
+    /// The tree of a part follows.
+    Part(usize),
+}
+
+/// The tree of a part.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Record(Vec<u8>);
+
+impl Record {
+    pub fn clear(&mut self) {
+        self.0 = Vec::new();
+    }
+
+    pub fn outside(&mut self) {
+        self.0.push(1);
+    }
+
+    pub fn near(&mut self, triangle: u32) {
+        self.0.push(2);
+        self.number(triangle as usize);
+    }
+
+    pub fn removed(&mut self, holder: Holder) {
+        self.0.push(3);
+        for number in [holder.course, holder.solid, holder.stretch] {
+            self.number(number);
+        }
+        self.0.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
+    }
+
+    pub fn halved(&mut self, halved: Halved) {
+        self.0.push(byte_of(halved));
+    }
+
+    /// In groups of seven bits, the lowest first.
+    fn number(&mut self, mut number: usize) {
+        while number > 0x7f {
+            self.0.push(number as u8 | 0x80);
+            number >>= 7;
+        }
+        self.0.push(number as u8);
+    }
+}
+
+fn byte_of(halved: Halved) -> u8 {
+    let (first, pair) = match halved {
+        Halved::Corners(pair) => (10, pair),
+        Halved::Normals(pair) => (13, pair),
+    };
+    first + (pair[0] + pair[1] - 1) as u8
+}
+
+/// The patches of the surface in parts, the large ones halved; and how they make up the surface.
+pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch) -> bool) -> (Vec<Patch>, Vec<Step>) {
+    let (mut parts, mut steps) = (Vec::new(), Vec::with_capacity(2 * surface.len()));
+    for own in surface {
+        steps.push(Step::Begin);
+        match own.len() {
+            0 => steps.push(Step::Byte(0)),
+            1 => {}
+            _ => steps.push(Step::Byte(16)),
+        }
+        let mut open: Vec<Patch> = own.into_iter().rev().collect();
+        while let Some(patch) = open.pop() {
+            let halves = patch.halves(0.0, f64::MIN_POSITIVE, &[]);
+            if let Some((halved, [first, second])) = halves.filter(|_| is_large(&patch)) {
+                steps.push(Step::Byte(byte_of(halved)));
+                open.extend([second, first]);
+            } else {
+                steps.push(Step::Part(parts.len()));
+                parts.push(patch);
+            }
+        }
+    }
+    (parts, steps)
+}
+
+/// The trees of all patches.
+pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
+    let mut all: Vec<PatchTrees> = Vec::new();
+    let mut patches = 0;
+    for step in steps {
+        if matches!(step, Step::Begin) {
+            if patches % TOGETHER == 0 {
+                all.push((patches, 0, Vec::new()));
+            }
+            patches += 1;
+        }
+        let Some((_, count, bytes)) = all.last_mut() else {
+            continue;
+        };
+        match step {
+            Step::Begin => *count += 1,
+            Step::Byte(byte) => bytes.push(*byte),
+            Step::Part(part) => bytes.extend_from_slice(&records[*part].0),
+        }
+    }
+    all
+}
+
+/// Where a triangle of a surface is among all, by its corners.
+pub(super) fn key(corners: &[[f64; 3]; 3]) -> [u64; 9] {
+    std::array::from_fn(|k| (corners[k / 3][k % 3] + 0.0).to_bits())
+}
