@@ -11,6 +11,7 @@ mod regress;
 mod standalone;
 mod stored;
 mod suites;
+mod validate;
 mod workspace;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -70,6 +71,11 @@ enum Command {
         /// Also with steps and tolerances that take many minutes.
         #[arg(long)]
         fine: bool,
+    },
+    /// Compares what is predicted with what a shop logged and measured, and draws the plots of docs/validation.md; needs the shared data.
+    Validate {
+        /// What to compare.
+        what: Prediction,
     },
     /// Does one piece of work of `bench instructions`.
     #[command(hide = true)]
@@ -150,6 +156,13 @@ enum Table {
     All,
 }
 
+/// What is predicted.
+#[derive(Clone, Copy, ValueEnum)]
+enum Prediction {
+    /// The times of a program's blocks.
+    Time,
+}
+
 /// Runs the same command in a release build; measurements of any other would be misleading.
 fn in_release() -> Result<bool, String> {
     let status = std::process::Command::new(env!("CARGO"))
@@ -204,6 +217,7 @@ fn main() -> ExitCode {
         Command::Pictures { filter } => pictures::draw(filter.as_deref()).map(|()| true),
         Command::Peers { .. } if cfg!(debug_assertions) => in_release(),
         Command::Peers { fine } => others::peers::run(fine).map(|()| true),
+        Command::Validate { what } => validate::run(what).map(|()| true),
         Command::Work { name } => bench::work(&name).map(|()| true),
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),

@@ -29,6 +29,8 @@ pub struct Series {
     pub colour: usize,
     /// Whether the line is dashed.
     pub dashed: bool,
+    /// Whether a line goes through the points.
+    pub joined: bool,
     /// `(x, y)`.
     pub points: Vec<[f64; 2]>,
 }
@@ -230,7 +232,7 @@ fn draw(svg: &mut String, panel: &Panel, [left, top]: [f64; 2]) {
             .collect();
         let words: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
         let dashed = if series.dashed { " dashed" } else { "" };
-        if places.len() > 1 {
+        if series.joined && places.len() > 1 {
             let _ = writeln!(
                 svg,
                 "<path class=\"line s{}{dashed}\" d=\"M{}\"/>",
@@ -294,6 +296,7 @@ mod tests {
             name: "a < b".into(),
             colour: 1,
             dashed: false,
+            joined: true,
             points,
         };
         let panel = Panel {

@@ -13,12 +13,25 @@ mod session;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::process::ExitCode;
+use std::{panic, thread};
+use sweepsim_formats::STEP_THREAD;
 use sweepsim_job::Task;
+
+/// Keeps panics of the reader of STEP files off the screen: they become errors about the file.
+fn quiet_readers() {
+    let before = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        if thread::current().name() != Some(STEP_THREAD) {
+            before(info);
+        }
+    }));
+}
 
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
     session::interruption::handle();
+    quiet_readers();
     let done = match Arguments::parse().command {
         Command::Simulate(options) => commands::run(Task::Simulate, &options, &Default::default()),
         Command::Sweep(options) => commands::run(Task::Sweep, &options, &Default::default()),

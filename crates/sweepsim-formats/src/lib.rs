@@ -27,6 +27,7 @@
 //! | dexels, compact and exact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
 //! | dexels along three axes (`.tridexels`) | [`read_tri_dexels`] | [`write_tri_dexels`] |
 //! | dexels as NumPy arrays (`.npz`) | [`read_dexels_npz`] | [`write_dexels_npz`] |
+//! | solids (STEP), with the feature `step` | [`read_step`] | |
 //! | meshes for ParaView (`.vtp`) | [`read_vtp`] | [`write_vtp`] |
 //! | dexels for ParaView (`.vtu`) | | [`write_dexels_vtu`] |
 //! | any of these meshes, by extension | [`read_mesh_file`] | [`write_mesh_file`] |
@@ -62,8 +63,9 @@ pub use jobs::{
     Flags, Job, JobPath, LimitRegion, Limits, Origin, Origins, Provided, RegionPlace, Seconds, Setup, Target, Units,
 };
 pub use meshes::{
-    Colour, MeshFormat, parse_stl, read_3mf, read_coloured_mesh_file, read_glb, read_mesh_file, read_ply, read_stl,
-    read_vtp, write_3mf, write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
+    Colour, MeshFormat, STEP_CHORD, STEP_SHARE, STEP_THREAD, StepBody, StepFace, StepPart, parse_step, parse_stl,
+    read_3mf, read_coloured_mesh_file, read_glb, read_mesh_file, read_ply, read_step, read_stl, read_vtp, write_3mf,
+    write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
     ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, Measure, MoveSummary, NotLookedAt,

@@ -173,6 +173,7 @@ fn panel(curves: &[Curve], name: &str, title: &str, labels: [&str; 2], logarithm
         name: curve.name.clone(),
         colour: colour % 5,
         dashed: false,
+        joined: true,
         points: curve.points.clone(),
     });
     Panel {

@@ -186,6 +186,7 @@ fn series(name: &str, colour: usize, points: Vec<[f64; 2]>) -> Series {
         name: name.into(),
         colour,
         dashed: false,
+        joined: true,
         points,
     }
 }

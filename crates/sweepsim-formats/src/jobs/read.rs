@@ -1,5 +1,6 @@
 //! From the text of a job to a [`Job`]: every value is checked, and errors give its position.
 
+use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path as FilePath, PathBuf};
 
@@ -9,7 +10,9 @@ use super::provided::Provided;
 use super::schema;
 use super::tools::ToolBox;
 use crate::error::{FormatError, Problem, TextPosition};
+use crate::meshes::{STEP_CHORD, STEP_SHARE};
 use crate::text::{self, SpanTree};
+use sweepsim_nc::Note;
 
 /// The default tolerance, in units of the job.
 const TOLERANCE: f64 = 1e-6;
@@ -30,8 +33,27 @@ pub(crate) fn parse(text: &str, file: &FilePath, provided: &Provided) -> Result<
         provided,
         spans: SpanTree::of(text),
         unit: units.in_mm(),
+        chord: chord(&raw, units),
+        read: RefCell::default(),
     };
     reader.job(raw, units)
+}
+
+/// How far triangles may be from the surfaces of STEP files, in millimetres: a share of the smallest limit that is not 0.
+fn chord(raw: &schema::Job, units: Units) -> f64 {
+    let regions = raw.limits.iter().flat_map(|limits| &limits.regions);
+    let regions = regions.flat_map(|region| [region.gouge, region.excess]);
+    let limits = raw
+        .limits
+        .iter()
+        .flat_map(|limits| [limits.gouge, limits.excess])
+        .chain(regions);
+    let smallest = limits.filter(|limit| *limit > 0.0).fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() {
+        STEP_SHARE * smallest * units.in_mm()
+    } else {
+        STEP_CHORD
+    }
 }
 
 pub(crate) struct JobReader<'a> {
@@ -41,6 +63,10 @@ pub(crate) struct JobReader<'a> {
     spans: SpanTree,
     /// Millimetres per unit of the job.
     pub(crate) unit: f64,
+    /// How far triangles may be from the surfaces of STEP files, in millimetres.
+    pub(crate) chord: f64,
+    /// How STEP files were read.
+    pub(crate) read: RefCell<Vec<Note>>,
 }
 
 impl JobReader<'_> {
@@ -87,7 +113,10 @@ impl JobReader<'_> {
         let mut tool_box = self.tool_box(&raw)?;
         let (setups, paths) = self.setups(&raw, &mut tool_box, tolerance, &grid)?;
         let ToolBox {
-            tools, bodies, notes, ..
+            tools,
+            bodies,
+            mut notes,
+            ..
         } = tool_box;
         let target = self.target(&raw, &grid)?;
         let limits = self.limits(&raw, target.as_ref())?;
@@ -99,6 +128,7 @@ impl JobReader<'_> {
             "0 or greater",
             &["clearance".into()],
         )?;
+        notes.extend(self.read.take());
         let stem = self.file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         Ok(Job {
             name: raw.name.or(stem).unwrap_or_else(|| "job".into()),

@@ -7,6 +7,7 @@ use sweepsim_dexel::Mesh;
 use super::files::{MeshFormat, read_mesh_file};
 use super::glb::coloured_glb;
 use super::ply::coloured_ply;
+use super::step::{STEP_CHORD, read_step};
 use super::threemf::coloured_3mf;
 use crate::error::FormatError;
 use crate::text::whole;
@@ -28,7 +29,8 @@ pub(crate) fn parsed(text: &str) -> Option<Colour> {
 }
 
 /// Reads a mesh with the colour of each triangle, if it has one: `.ply` (of its face, or of its corners if they agree),
-/// `.glb` (of its material) and `.3mf` (of its material or colour group). Other formats have no colours.
+/// `.glb` (of its material), `.3mf` (of its material or colour group) and `.step` (of its face, or of the body). Other
+/// formats have no colours.
 ///
 /// # Errors
 /// Those of [`read_mesh_file`].
@@ -38,6 +40,11 @@ pub fn read_coloured_mesh_file(file: &Path) -> Result<(Mesh, Vec<Option<Colour>>
         Some(MeshFormat::Ply) => coloured_ply(&bytes()?),
         Some(MeshFormat::Glb) => coloured_glb(&bytes()?),
         Some(MeshFormat::ThreeMf) => coloured_3mf(&bytes()?),
+        Some(MeshFormat::Step) => {
+            let part = read_step(file, STEP_CHORD)?;
+            let colours = part.colours();
+            Ok((part.mesh, colours))
+        }
         _ => {
             let mesh = read_mesh_file(file)?;
             let none = vec![None; mesh.triangles.len()];

@@ -302,7 +302,7 @@ fn one_message_with_its_place() {
         (
             "    ],\n)",
             "    ],\n    target: Mesh(\"part.STEP\"),\n)".into(),
-            "job.ron:12:13: STEP files are not read: export the part from the CAD system as a closed mesh (.stl, .3mf, .glb, .ply)",
+            "job.ron:12:13: cannot read the target file part.STEP: there is no such file",
         ),
         // Set-ups.
         (

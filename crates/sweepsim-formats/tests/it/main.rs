@@ -12,4 +12,6 @@ mod guide;
 mod jobs;
 mod motions;
 mod round_trips;
+#[cfg(feature = "step")]
+mod step;
 mod support;

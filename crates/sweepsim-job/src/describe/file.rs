@@ -1,6 +1,7 @@
 //! The content of a file in words.
 
 use super::program::{library, program};
+use super::step::step;
 use super::{Description, tool_in_words};
 use crate::base::JobError;
 use crate::base::kind::Kind;
@@ -11,7 +12,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels};
-use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file, read_tri_dexels_file};
+use sweepsim_formats::{
+    DexelFormat, Job, MeshFormat, STEP_CHORD, read_dexels_csv, read_dexels_file, read_mesh_file, read_step,
+    read_tri_dexels_file,
+};
 use sweepsim_nc::tools::read_library;
 use sweepsim_nc::{Note, read_file};
 
@@ -27,6 +31,7 @@ pub fn describe(file: &Path, dialect: &DialectOptions) -> Result<Description, Jo
     reading.exact_arcs = true;
     match Kind::of(file)? {
         Kind::Job => job(&mut text, &Job::read(file)?),
+        Kind::Mesh if MeshFormat::of(file) == Some(MeshFormat::Step) => step(&mut text, &read_step(file, STEP_CHORD)?),
         Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),
         Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Csv) => {
             let unreadable = |error: std::io::Error| JobError::run(format!("cannot read {}: {error}", file.display()));

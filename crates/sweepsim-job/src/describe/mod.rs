@@ -2,6 +2,7 @@
 
 mod file;
 mod program;
+mod step;
 mod tool;
 
 pub use file::describe;

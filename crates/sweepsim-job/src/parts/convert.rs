@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use sweepsim_dexel::{Dexels, Grid, Stock, TriDexels};
-use sweepsim_formats::{DexelFormat, MeshFormat, write_dexels, write_mesh, write_tri_dexels};
+use sweepsim_formats::{DexelFormat, MeshFormat, STEP_CHORD, read_step, write_dexels, write_mesh, write_tri_dexels};
 use sweepsim_nc::tools::{read_library, to_ron};
 use sweepsim_nc::write::GcodeOptions;
 use sweepsim_nc::{Controller, Machine, Program, read_file, table, write};
@@ -137,7 +137,13 @@ impl ConvertRequest {
                 let grid = self.grid.grid(None);
                 // The mesh provides the area, so the number of cells is enough.
                 let known = if Kind::of(input)? == Kind::Dexels { grid? } else { None };
-                let solid = Solid::read(input, known.as_ref())?;
+                let solid = if MeshFormat::of(input) == Some(MeshFormat::Step) {
+                    let part = read_step(input, STEP_CHORD)?;
+                    part.notes.iter().for_each(|note| text.line("note", note));
+                    Solid::Mesh(part.mesh)
+                } else {
+                    Solid::read(input, known.as_ref())?
+                };
                 write_solid(&solid, self, sink, &mut text)?;
             }
         }
@@ -159,7 +165,7 @@ fn write_solid(
         }
         return sink.write(&name, &mut |file| file.write_all(&png));
     }
-    if let Some(format) = MeshFormat::of(output) {
+    if let Some(format) = MeshFormat::of(output).filter(|format| *format != MeshFormat::Step) {
         let surface = match solid {
             Solid::Mesh(mesh) => mesh.clone(),
             Solid::Dexels(_) | Solid::TriDexels(_) => solid.surface()?,

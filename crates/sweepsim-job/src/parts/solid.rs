@@ -33,10 +33,8 @@ impl Solid {
                 Ok(Self::TriDexels(read_tri_dexels_file(file)?.into()))
             }
             Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
-            // Says what to do about STEP files.
-            Kind::Path if is_step(file) => Ok(Self::Mesh(read_mesh_file(file)?)),
             Kind::Job | Kind::Tools | Kind::Path => Err(JobError::run(format!(
-                "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .tridexels .npz)",
+                "{}: expected a mesh (.stl .ply .glb .3mf .vtp .step) or dexels (dexels.csv .dexels .tridexels .npz)",
                 file.display()
             ))),
         }
@@ -71,11 +69,6 @@ impl Solid {
                 .map_err(|error| JobError::run(format!("{}: {error}", file.display()))),
         }
     }
-}
-
-fn is_step(file: &Path) -> bool {
-    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    matches!(extension.as_deref(), Some("step" | "stp"))
 }
 
 /// The grid of dexels, where their file does not contain it, or a mesh becomes dexels.

@@ -43,6 +43,7 @@ fn panels(studies: &[Study], label: &str, x: fn(&Study, &Row) -> f64, exact: boo
             name: format!("{}, {name}", bridge.name()),
             colour,
             dashed,
+            joined: true,
             points: study.of(bridge).map(|row| [x(study, row), measure(row)]).collect(),
         };
         let mut series = Vec::new();
@@ -57,6 +58,7 @@ fn panels(studies: &[Study], label: &str, x: fn(&Study, &Row) -> f64, exact: boo
                 name: "sweepsim, its tolerance".into(),
                 colour: 2,
                 dashed: false,
+                joined: true,
                 points: vec![[1.0, 1e-6]],
             });
         }

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
+use sweepsim_nc::Note;
 
 use crate::dexels::{DexelFormat, read_dexels_file, read_tri_dexels_file};
 use crate::error::{FormatError, Problem};
-use crate::extension::{is_step, step_problem};
 use crate::jobs::place::Step;
 use crate::jobs::read::JobReader;
 use crate::jobs::schema;
-use crate::meshes::{Colour, MeshFormat, read_coloured_mesh_file, read_stl};
+use crate::meshes::{Colour, MeshFormat, read_coloured_mesh_file, read_step, read_stl};
 
 impl JobReader<'_> {
     /// The stock, or a part of it, that the steps lead to.
@@ -121,8 +121,19 @@ impl JobReader<'_> {
         steps: &[Step],
     ) -> Result<(TriangleSoup, Vec<Option<Colour>>), FormatError> {
         let file = self.beside(name);
-        if is_step(&file) {
-            return Err(self.error(step_problem(), steps));
+        if MeshFormat::of(&file) == Some(MeshFormat::Step) {
+            // Its unit is in the file.
+            let part = self.named(read_step(&file, self.chord), &file, what, steps)?;
+            let line = self.position(self.node(steps).span.clone()).line;
+            let near = format!(
+                "the largest distance of its triangles from its faces that was found is {:.1e} mm",
+                part.deviation
+            );
+            let notes = std::iter::once(&near).chain(&part.notes);
+            let notes = notes.map(|note| Note::new(line, format!("the {what} {name}: {note}")));
+            self.read.borrow_mut().extend(notes);
+            let colours = part.colours();
+            return Ok((part.mesh.soup().unwrap_or_default(), colours));
         }
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
         let (mesh, colours) = if known {

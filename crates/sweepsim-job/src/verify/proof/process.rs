@@ -118,7 +118,7 @@ fn said(job: &Job, texts: &mut ProgramTexts, mut statement: Statement, found: &T
         }
         findings.push(own);
     }
-    Proven::of(statement, findings)
+    Proven::of(statement, findings, Vec::new())
 }
 
 /// Tools of which it is not known what they remove.

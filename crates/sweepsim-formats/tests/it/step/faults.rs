@@ -1,0 +1,261 @@
+//! STEP files that cannot be read, or not as a whole.
+
+use super::writer::Writer;
+use super::{CHORD, assembly, block};
+use sweepsim_formats::parse_step;
+
+fn refused(text: &str) -> String {
+    match parse_step(text.as_bytes(), CHORD) {
+        Ok(part) => panic!("read as {:?}: {text}", part.bodies),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn cube() -> String {
+    block([0.0; 3], [10.0; 3])
+}
+
+/// Replaces the first entity of a kind by another text.
+fn with(text: &str, kind: &str, other: &str) -> String {
+    let at = text.find(&format!("={kind}(")).unwrap() + 1;
+    let end = at + text[at..].find(';').unwrap();
+    format!("{}{other}{}", &text[..at], &text[end..])
+}
+
+#[test]
+fn faults_are_named_with_their_line() {
+    let cube = cube();
+    let unit = "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))";
+    let short = cube.find("MANIFOLD").unwrap();
+    let twice = cube.replace("ENDSEC;\nEND-", "#1=CARTESIAN_POINT('',(0.,0.,0.));\nENDSEC;\nEND-");
+    let cases: Vec<(String, &str)> = vec![
+        (String::new(), "1:1: this is no STEP file"),
+        ("solid cube\nendsolid\n".into(), "1:1: this statement has no end"),
+        ("PK\u{3}\u{4}".into(), "1:1: this STEP file is compressed"),
+        (cube[..short].into(), "this statement has no end: expected a semicolon"),
+        (
+            cube[..short - 4].trim_end_matches(|c| c != ';').into(),
+            "this STEP file ends before END-ISO-10303-21;",
+        ),
+        (twice, "#1 is there twice"),
+        (
+            cube.replace("ENDSEC;\nEND-", "ENDSEC;\nDATA;\nENDSEC;\nEND-"),
+            "a second DATA section is not read",
+        ),
+        (
+            format!("ISO-10303-21;\nDATA;\n#1=A({}1{});\n", "(".repeat(200), ")".repeat(200)),
+            "more than 100 lists in one another",
+        ),
+        (cube.replace("'block'", "'block"), "expected"),
+        (
+            cube.replace(unit, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.HECTO.,.METRE.))"),
+            "8:1: #1 is no unit of length that is known",
+        ),
+        (
+            cube.replace(unit, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.SECOND.))"),
+            "8:1: #1 is no unit of length that is known",
+        ),
+        (
+            cube.replace("((#1,#2))", "((#2))"),
+            "10:1: this context has no unit of length",
+        ),
+        (
+            with(
+                &cube,
+                "(GEOMETRIC_REPRESENTATION_CONTEXT",
+                "REPRESENTATION_CONTEXT('','')",
+            ),
+            "no unit of length is in this file",
+        ),
+        (
+            with(&cube, "MANIFOLD_SOLID_BREP", "CSG_SOLID('',#1)"),
+            "is a CSG_SOLID, which is not read",
+        ),
+        (
+            with(&cube, "MANIFOLD_SOLID_BREP", "SHAPE_ASPECT()"),
+            "no solid and no surface is in this STEP file (AUTOMOTIVE_DESIGN)",
+        ),
+        (
+            with(&cube, "MANIFOLD_SOLID_BREP", "MANIFOLD_SOLID_BREP('')"),
+            "the reader of STEP files failed at this one",
+        ),
+        (
+            with(&cube, "PLANE", "PLANE('',#9999)"),
+            "refers to #9999, which is not in this file",
+        ),
+        (
+            with(&cube, "PLANE", "FREE_FORM('',#1)"),
+            "surfaces of type FREE_FORM are not read yet",
+        ),
+        (with(&cube, "DIRECTION", "DIRECTION('',(0.,0.,0.))"), "a zero direction"),
+        (
+            with(&cube, "VERTEX_POINT", "VERTEX_POINT('',$)"),
+            "expected a reference",
+        ),
+        (cube.replace("10.0", "1e999"), ""),
+    ];
+    for (text, expected) in &cases {
+        let message = refused(text);
+        assert!(message.contains(expected), "expected {expected}, found {message}");
+    }
+}
+
+/// A solid without one of its faces, with one twice, or with all turned inwards is no solid.
+#[test]
+fn solids_that_do_not_close_are_refused() {
+    for missing in 0..6 {
+        let mut file = Writer::new(false);
+        let mut faces = file.block_faces([0.0; 3], [10.0; 3]);
+        faces.remove(missing);
+        let solid = file.solid("open", &faces);
+        file.product("", &[solid]);
+        let message = refused(&file.text());
+        let told = format!("solid #{solid} is open: its edge #");
+        assert!(
+            message.contains(&told) && message.ends_with("bounds one face, expected two"),
+            "{missing}: {message}"
+        );
+    }
+    let inwards = cube().replace(",.T.);", ",.F.);");
+    let message = refused(&inwards);
+    assert!(
+        message.contains("inside out") || message.contains("not closed") || message.contains("enclose"),
+        "{message}"
+    );
+}
+
+/// Units that differ within a file, or whose factor is not that of their name.
+#[test]
+fn units_that_disagree_are_refused() {
+    let inches = assembly().text();
+    let wrong = inches.replace("LENGTH_MEASURE(25.4)", "LENGTH_MEASURE(1.)");
+    let message = refused(&wrong);
+    assert!(
+        message.contains("is called INCH, but its factor is 1: expected 25.4"),
+        "{message}"
+    );
+    let other = "#900=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.));\n\
+        #901=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#900))REPRESENTATION_CONTEXT('',''));\nENDSEC;\nEND-";
+    let message = refused(&inches.replace("ENDSEC;\nEND-", other));
+    assert!(
+        message.contains("the unit of length differs from that of #"),
+        "{message}"
+    );
+}
+
+#[test]
+fn assemblies_that_are_not_placed_are_refused() {
+    let text = assembly().text();
+    let unplaced = with(&text, "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "SHAPE_ASPECT()");
+    let message = refused(&unplaced);
+    assert!(message.contains("places a product, but not where"), "{message}");
+    // An assembly that contains itself.
+    let mut file = Writer::new(false);
+    let faces = file.block_faces([0.0; 3], [1.0; 3]);
+    let solid = file.solid("", &faces);
+    let (one, other) = (file.product("one", &[solid]), file.product("other", &[]));
+    let place = file.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+    file.occurrence(one, other, place);
+    file.occurrence(other, one, place);
+    assert!(refused(&file.text()).contains("one that contains itself"));
+    // Twice the one below it, forty times: 2⁴⁰ bricks.
+    let mut file = Writer::new(false);
+    let faces = file.block_faces([0.0; 3], [1.0; 3]);
+    let solid = file.solid("", &faces);
+    let mut below = file.product("0", &[solid]);
+    for level in 1..=40 {
+        let next = file.product(&level.to_string(), &[]);
+        let place = file.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        file.occurrence(below, next, place);
+        file.occurrence(below, next, place);
+        below = next;
+    }
+    assert!(refused(&file.text()).contains("more than 100000 placed products"));
+}
+
+/// Entities that are built on themselves, which would be followed without end, and very many on one another.
+#[test]
+fn circles_and_towers_are_refused() {
+    let cube = cube();
+    let circle = with(&cube, "PLANE", "OFFSET_SURFACE('',#900,1.,.F.)").replace(
+        "ENDSEC;\nEND-",
+        "#900=OFFSET_SURFACE('',#901,1.,.F.);\n#901=OFFSET_SURFACE('',#900,1.,.F.);\nENDSEC;\nEND-",
+    );
+    assert!(refused(&circle).contains("is built on itself"));
+    let shell = with(&cube, "CLOSED_SHELL", "ORIENTED_CLOSED_SHELL('',*,#900,.T.)").replace(
+        "ENDSEC;\nEND-",
+        "#900=ORIENTED_CLOSED_SHELL('',*,#900,.T.);\nENDSEC;\nEND-",
+    );
+    assert!(refused(&shell).contains("is built on itself"));
+    let mut tower = String::new();
+    for level in 900..100_900 {
+        tower += &format!("#{level}=OFFSET_SURFACE('',#{},1.,.F.);\n", level + 1);
+    }
+    let tower = with(&cube, "PLANE", "OFFSET_SURFACE('',#900,1.,.F.)")
+        .replace("ENDSEC;\nEND-", &format!("{tower}ENDSEC;\nEND-"));
+    assert!(refused(&tower).contains("one on the other"));
+}
+
+/// A sheet encloses nothing: it is read, and said to be one; beside a solid it is left out, which is said as well.
+#[test]
+fn sheets_are_never_solids() {
+    let mut file = Writer::new(false);
+    let faces = file.block_faces([0.0; 3], [10.0; 3]);
+    let shell = file.shell(false, &faces[..5]);
+    let sheet = file.add(&format!("SHELL_BASED_SURFACE_MODEL('skin',(#{shell}))"));
+    let alone = file.product("skin", &[sheet]);
+    let part = parse_step(file.text().as_bytes(), CHORD).unwrap();
+    assert_eq!(
+        (part.bodies.len(), part.bodies[0].solid, part.bodies[0].volume),
+        (1, false, None)
+    );
+    assert!(part.mesh.soup().unwrap().check_closed().is_err());
+    assert_eq!(part.notes, ["no solid: the faces are sheets, which enclose nothing"]);
+    let _ = alone;
+    let faces = file.block_faces([20.0; 3], [30.0; 3]);
+    let solid = file.solid("block", &faces);
+    file.product("block", &[solid]);
+    let part = parse_step(file.text().as_bytes(), CHORD).unwrap();
+    assert_eq!(part.mesh.triangles.len(), 12);
+    part.mesh.soup().unwrap().check_closed().unwrap();
+    assert_eq!(part.notes, ["left out: a sheet of 5 faces, as it encloses nothing"]);
+}
+
+/// Random bytes changed, and the text cut anywhere: an error or a part that closes, never a panic.
+#[test]
+fn damaged_files_are_refused_or_close() {
+    let text = super::plate(true).text();
+    let bytes = text.as_bytes();
+    let mut seed = 1_u64;
+    let mut random = |below: usize| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % below
+    };
+    let (mut read, mut failed) = (0, 0);
+    for case in 0..400 {
+        let mut damaged = bytes.to_vec();
+        if case % 8 == 0 {
+            damaged.truncate(random(bytes.len()));
+        }
+        for _ in 0..=random(2) {
+            let at = random(damaged.len().max(1));
+            let letters = b"0123456789#(),.;'$*ABCTF\n";
+            if let Some(byte) = damaged.get_mut(at) {
+                *byte = letters[random(letters.len())];
+            }
+        }
+        match parse_step(&damaged, 0.1) {
+            Ok(part) => {
+                part.mesh.soup().unwrap().check_closed().unwrap();
+                read += 1;
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                failed += 1;
+            }
+        }
+    }
+    assert!(read > 20 && failed > 100, "{read} read, {failed} refused");
+}
