@@ -12,14 +12,17 @@
 mod arcs;
 mod calls;
 mod compensation;
+mod contour_cycles;
 mod cycles;
 mod frames;
+mod holes;
 mod interpreter;
 mod line;
 mod moves;
 mod planes;
 mod routine;
 mod settings;
+mod shapes;
 mod values;
 
 pub use super::run::Library;

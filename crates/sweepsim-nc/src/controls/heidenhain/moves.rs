@@ -196,12 +196,12 @@ impl Reader<'_> {
                 }
             }
             if calls {
-                self.drill().map_err(whole)?;
+                self.call_cycle().map_err(whole)?;
             }
             return Ok(());
         }
         let Some(target) = self.target(&words, kind, line)? else {
-            return Ok(());
+            return if calls { self.call_cycle().map_err(whole) } else { Ok(()) };
         };
         self.corner_ahead(words.rapid, abc)?;
         match kind {
@@ -209,7 +209,7 @@ impl Reader<'_> {
             _ => self.arc_block(kind, &words, target, abc).map_err(whole)?,
         }
         if calls {
-            self.drill().map_err(whole)?;
+            self.call_cycle().map_err(whole)?;
         }
         Ok(())
     }

@@ -97,6 +97,10 @@ impl Reader<'_> {
         }
         let whole = |problem| (problem, line.all());
         self.track.change_tool(tool.filter(|tool| *tool > 0)).map_err(whole)?;
+        // Q108 is the radius of the tool.
+        if let Some(radius) = self.known_radius() {
+            self.parameters.set("Q108", radius / self.unit()).map_err(whole)?;
+        }
         // Oversizes last until the next call of a tool, and are 0 there unless it says otherwise.
         if tool.is_some() || longer.is_some() {
             self.track.lengthen(longer.unwrap_or(0.0)).map_err(whole)?;

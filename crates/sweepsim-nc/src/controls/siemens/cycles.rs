@@ -3,17 +3,13 @@
 use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::text::error::NcProblem;
 
+/// The drilling cycles.
+pub(super) const HOLES: [&str; 8] = [
+    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89",
+];
+
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
 pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Result<HoleCycle, NcProblem> {
-    if !matches!(
-        name,
-        "CYCLE81" | "CYCLE82" | "CYCLE83" | "CYCLE84" | "CYCLE840" | "CYCLE85" | "CYCLE86" | "CYCLE89"
-    ) {
-        return Err(NcProblem::unsupported(
-            format!("{name} is"),
-            "expected CYCLE81, 82, 83, 84, 840, 85, 86 or 89, or the moves that it makes",
-        ));
-    }
     let get = |index: usize| arguments.get(index).copied().flatten();
     let length = |index: usize| get(index).map(|value| value * unit);
     let need = |index: usize, parameter: &str| {
@@ -71,4 +67,48 @@ pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Re
         work,
         ..HoleCycle::new(reference + clearance, depth, dwell, feeds_out)
     })
+}
+
+/// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;
+/// `CYCLE78(RTP, RFP, SDIS, DP, ADPR, FDPR, LDPR, DIAM, PIT, PITA, …)`: a hole that is drilled and threaded by the same tool. The helix is made over the whole depth.
+pub(super) fn thread(
+    name: &str,
+    arguments: &[Option<f64>],
+    unit: f64,
+    tool: f64,
+) -> Result<Vec<HoleCycle>, NcProblem> {
+    let get = |index: usize| arguments.get(index).copied().flatten();
+    let need = |index: usize, parameter: &str| {
+        let value = get(index).map(|value| value * unit);
+        value.ok_or_else(|| NcProblem::syntax(format!("{name} without {parameter}: expected a number")))
+    };
+    let (retract, surface, bottom) = (need(0, "RTP")?, need(1, "RFP")?, need(3, "DP")?);
+    let start = surface + get(2).unwrap_or(0.0).abs() * unit;
+    let mills = name == "CYCLE70";
+    let diameter = need(if mills { 4 } else { 7 }, "the diameter")?.abs();
+    let pitch = need(if mills { 7 } else { 8 }, "PIT")?.abs();
+    let outside = mills && get(11) == Some(1.0);
+    let radius = match outside {
+        true => 0.5 * diameter - need(5, "H1")?.abs() + tool,
+        false => 0.5 * diameter - tool,
+    };
+    if !(radius > 0.0 && pitch > 0.0 && bottom < surface) {
+        let found = format!("{diameter} mm wide, {} mm deep, with a pitch of {pitch} mm", surface - bottom);
+        let expected = format!("wider than the tool, {} mm, below its surface, with a pitch", 2.0 * tool);
+        return Err(NcProblem::value(format!("the thread of {name}"), found, expected));
+    }
+    let hole = HoleCycle {
+        end: retract,
+        feed: get(if mills { 10 } else { 15 }).filter(|feed| *feed > 0.0),
+        ..HoleCycle::new(start, bottom, None, false)
+    };
+    let around = HoleCycle {
+        work: HoleWork::Helix {
+            radius,
+            turns: (start - bottom) / pitch,
+            outside,
+        },
+        ..hole.clone()
+    };
+    Ok(if mills { vec![around] } else { vec![hole, around] })
 }

@@ -6,7 +6,7 @@
 use super::interpreter::Reader;
 use super::language::expression::Value;
 use super::state::Modal;
-use crate::drive::{Cycle, Pocket};
+use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::model::stock::StockDescription;
 use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
@@ -14,10 +14,18 @@ use crate::text::error::NcProblem;
 /// The most places of a pattern.
 const MOST_PLACES: u32 = 10_000;
 
-/// A milling cycle, and where its shapes are: middles in the plane, and turns.
+/// The milling cycles.
+pub(super) const MILLING: [&str; 8] = [
+    "CYCLE61", "POCKET3", "POCKET4", "CYCLE76", "CYCLE77", "SLOT1", "SLOT2", "LONGHOLE",
+];
+/// Where the modal cycle is called.
+pub(super) const PATTERNS: [&str; 3] = ["HOLES1", "HOLES2", "CYCLE801"];
+
+/// A milling cycle, and where its shapes are: middles in the plane, and turns; of slots on a circle, the radius of their middle lines and how long they are, in degrees.
 pub(super) struct Milled {
     pub pocket: Pocket,
     pub places: Vec<([f64; 2], f64)>,
+    pub bent: Option<[f64; 2]>,
 }
 
 /// The arguments of a cycle.
@@ -63,13 +71,14 @@ impl Arguments<'_> {
     }
 }
 
-/// `POCKET3`, `POCKET4`, `CYCLE61`, `CYCLE76`, `CYCLE77`, `SLOT1`, `LONGHOLE`, with a tool of this radius; `None` for others.
+/// One of the [milling cycles](MILLING), with a tool of this radius; `None` for others.
 pub(super) fn milled(name: &str, values: &[Option<f64>], unit: f64, tool: f64) -> Option<Result<Milled, NcProblem>> {
     let arguments = Arguments { name, values, unit };
     Some(match name {
         "POCKET3" | "CYCLE76" => rectangle(&arguments, tool),
         "POCKET4" | "CYCLE77" => circle(&arguments, tool),
         "SLOT1" | "LONGHOLE" => slots(&arguments, tool),
+        "SLOT2" => bent_slots(&arguments, tool),
         "CYCLE61" => facing(&arguments, tool),
         _ => return None,
     })
@@ -142,6 +151,7 @@ fn rectangle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: vec![([arguments.length(7 + at), arguments.length(8 + at)], 0.0)],
+        bent: None,
     })
 }
 
@@ -173,6 +183,7 @@ fn circle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: vec![([arguments.length(5 + at), arguments.length(6 + at)], 0.0)],
+        bent: None,
     })
 }
 
@@ -194,6 +205,7 @@ fn facing(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             [arguments.length(4) + 0.5 * length, arguments.length(5) + 0.5 * width],
             0.0,
         )],
+        bent: None,
     })
 }
 
@@ -241,6 +253,35 @@ fn slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: (0..count).map(place).collect(),
+        bent: None,
+    })
+}
+
+/// `SLOT2(RTP, RFP, SDIS, DP, DPR, NUM, AFSL, WID, CPA, CPO, RAD, STA1, INDA, FFD, FFP1, MID, CDIR, FAL, VARI, …)`: slots along a circle, each `AFSL` degrees long.
+fn bent_slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
+    let levels = arguments.levels(Some(4))?;
+    let count = arguments.get(5).unwrap_or(1.0);
+    let count = NcProblem::whole("NUM of SLOT2", count, 1..=MOST_PLACES, "a whole number from 1 on")?;
+    let long = arguments.get(6).unwrap_or(0.0);
+    let width = arguments.need(7, "WID")?.abs();
+    let [x, y, radius] = [8, 9, 10].map(|index| arguments.length(index));
+    let step = arguments.get(12).filter(|step| *step != 0.0);
+    let step = step.unwrap_or(360.0 / f64::from(count));
+    let first = arguments.get(11).unwrap_or(0.0);
+    let finishes = arguments.finishes(18);
+    Ok(Milled {
+        pocket: Pocket {
+            half: [radius.max(0.5 * width), 0.5 * width],
+            corner: 0.5 * width,
+            infeed: arguments.length(15),
+            left: [if finishes { 0.0 } else { arguments.length(17) }, 0.0],
+            rim_alone: finishes,
+            feed: arguments.feed(14),
+            plunge: arguments.feed(13),
+            ..pocket(levels, tool)
+        },
+        places: (0..count).map(|k| ([x, y], first + f64::from(k) * step)).collect(),
+        bent: Some([radius, long]),
     })
 }
 
@@ -304,17 +345,23 @@ pub(super) fn pattern(name: &str, values: &[Option<f64>], unit: f64) -> Option<R
 impl Reader<'_> {
     /// A milling cycle: at once, each of its shapes.
     pub(super) fn mill(&mut self, name: &str, values: &[Option<f64>]) -> Result<bool, NcProblem> {
-        if !matches!(
-            name,
-            "CYCLE61" | "POCKET3" | "POCKET4" | "CYCLE76" | "CYCLE77" | "SLOT1" | "LONGHOLE"
-        ) {
+        if !MILLING.contains(&name) {
             return Ok(false);
         }
-        let tool = self.cutter_radius()?;
-        let Some(milled) = milled(name, values, self.modes.unit(), tool) else {
+        let unit = self.modes.unit();
+        let Some(shape) = milled(name, values, unit, 0.0) else {
             return Ok(false);
         };
-        let Milled { mut pocket, places } = milled?;
+        let unknown = shape?.pocket.widest_unknown_tool();
+        let tool = self.cutter_radius(unknown)?;
+        let Some(milled) = milled(name, values, unit, tool) else {
+            return Ok(false);
+        };
+        let Milled {
+            mut pocket,
+            places,
+            bent,
+        } = milled?;
         if self.track.known().is_none() && self.uncertain {
             return Ok(true);
         }
@@ -322,7 +369,16 @@ impl Reader<'_> {
         for (middle, further) in places {
             self.go_to_place(middle, pocket.start)?;
             pocket.turn = turn + further;
-            let cycle = Cycle::Pocket(name.to_owned(), Box::new(pocket.clone()));
+            let shape = match bent {
+                None => Shape::Pocket(pocket.clone()),
+                Some([radius, long]) => Shape::ArcSlot(ArcSlot {
+                    pocket: pocket.clone(),
+                    radius,
+                    first: if long < 0.0 { further + long } else { further },
+                    long: long.abs(),
+                }),
+            };
+            let cycle = Cycle::Shape(name.to_owned(), Box::new(shape));
             self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)?;
         }
         Ok(true)
@@ -348,12 +404,12 @@ impl Reader<'_> {
     }
 
     /// In rapid over a place, not below a level.
-    fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
+    pub(super) fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
         let [u, v, w] = self.modes.plane;
         let Some(mut at) = self.track.known() else {
-            return Err(NcProblem::syntax(
-                "a cycle at an unknown position: expected a move to X, Y and Z before it",
-            ));
+            // The cycle says from where it begins.
+            (self.track.xyz[u], self.track.xyz[v]) = (Some(a), Some(b));
+            return Ok(());
         };
         if at[w] < level {
             at[w] = level;

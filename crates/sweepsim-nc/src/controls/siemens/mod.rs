@@ -12,6 +12,7 @@
 
 mod arcs;
 mod codes;
+mod contour_cycles;
 mod contours;
 mod cycles;
 mod frames;

@@ -23,6 +23,7 @@ use crate::gcode::syntax::{title, words};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcError, NcProblem};
 
 /// The most problems after the first one.
@@ -74,6 +75,10 @@ pub(crate) struct Seen {
     pub uncertain: bool,
     /// The units of the first move.
     pub units: Option<Units>,
+    /// G90.1 or G91.1.
+    pub centres: bool,
+    /// An arc without a radius, where neither has come.
+    pub odd_arcs: bool,
 }
 
 /// A text that is read, and where it comes from.
@@ -88,6 +93,8 @@ pub(crate) struct Outcome {
     pub trace: Vec<Canonical>,
     /// Whether something was assumed.
     assumed: bool,
+    /// Whether an arc had no radius about a centre that the program does not call relative.
+    odd_arcs: bool,
 }
 
 pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
@@ -95,6 +102,7 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         program: Err(error),
         trace: Vec::new(),
         assumed: false,
+        odd_arcs: false,
     };
     if let Err(error) = options.check() {
         return fail(error);
@@ -103,24 +111,54 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         let problem = NcProblem::value("the size of a program", input.text.len(), "less than 2 GB");
         return fail(NcError::new(problem, None));
     }
-    let read = |wear_alone| read_once(input, options, trace, wear_alone);
-    let outcome = read(false);
-    // Contours that cannot be offset by the tool's radius are those of the tool itself.
-    let assumed = outcome.assumed && outcome.program.is_err();
-    match assumed.then(|| read(true)) {
-        Some(other) if other.program.is_ok() => other,
-        _ => outcome,
-    }
+    let as_said = Reading {
+        wear_alone: options.wear_registers,
+        absolute_centres: false,
+    };
+    let outcome = read_once(input, options, trace, as_said);
+    // Contours that cannot be offset by the tool's radius are those of the tool itself; arcs that have no radius have absolute centres.
+    let centres = outcome.odd_arcs && !options.strict;
+    let wear = outcome.assumed && !as_said.wear_alone;
+    let others = [(true, false), (false, true), (true, true)].map(|(wear_alone, absolute_centres)| Reading {
+        wear_alone: wear_alone || as_said.wear_alone,
+        absolute_centres,
+    });
+    let mut others = others
+        .into_iter()
+        .filter(|other| outcome.program.is_err() && (wear || other.wear_alone == as_said.wear_alone))
+        .filter(|other| centres || !other.absolute_centres);
+    let found = others.find_map(|other| {
+        let other = read_once(input, options, trace, other);
+        other.program.is_ok().then_some(other)
+    });
+    found.unwrap_or(outcome)
 }
 
-/// `wear_alone`: registers D that nothing sets are 0.
-fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool) -> Outcome {
+/// How a program is read where controls differ, and it does not say how.
+#[derive(Clone, Copy)]
+struct Reading {
+    /// Registers D that nothing sets are 0.
+    wear_alone: bool,
+    /// I, J and K are coordinates of centres.
+    absolute_centres: bool,
+}
+
+fn read_once(input: &Input, options: &ReadOptions, trace: bool, reading: Reading) -> Outcome {
     let mut reader = Reader::new(input, options);
-    reader.tools.wear_alone = wear_alone;
+    reader.tools.wear_alone = reading.wear_alone;
+    reader.modes.absolute_centres = reading.absolute_centres;
+    if reading.absolute_centres {
+        let what = "the centres of arcs (I, J, K)";
+        let taken = "absolute coordinates: taken from the start of each arc, some have no radius";
+        reader
+            .track
+            .assume(Assumption::new(what, taken, "G90.1 or G91.1 in the program"));
+    }
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
     let assumed = reader.track.assumes();
+    let odd_arcs = reader.seen.odd_arcs;
     let program = NcError::all(errors).map_or(Ok(()), Err);
     let program = program.and_then(|()| match options.lenient {
         true => Ok(()),
@@ -137,6 +175,7 @@ fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool
         program,
         trace,
         assumed,
+        odd_arcs,
     }
 }
 

@@ -8,6 +8,7 @@ use crate::gcode::okuma;
 use crate::gcode::syntax::block::{Block, Word};
 use crate::model::program::Units;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// What the G words of a block ask for besides modes.
@@ -145,6 +146,18 @@ impl Reader {
                 }
                 Ok(())
             }
+            (Some(_), None) if plan.machine_coordinates && self.starts_in_rapid() => self
+                .go_in_machine_coordinates(MotionMode::Rapid, block)
+                .map_err(whole),
+            (Some(_), None) if self.starts_in_rapid() => {
+                let motion = self.modes.before_cycle.unwrap_or_else(|| {
+                    let (what, taken) = ("the kind of moves before the first motion code", "G0, as most controls start");
+                    self.track.assume(Assumption::new(what, taken, "G0 or G1 before them"));
+                    MotionMode::Rapid
+                });
+                self.modes.motion = Some(motion);
+                self.motion(block, plan)
+            }
             (Some(word), None) => {
                 let problem = NcProblem::syntax(format!(
                     "{} without a motion code: expected G0, G1, G2 or G3 here or before",
@@ -178,6 +191,11 @@ impl Reader {
         }
     }
 
+    /// Whether moves without a motion code are those that the control starts with: LinuxCNC has none, and strict readers.
+    fn starts_in_rapid(&self) -> bool {
+        !self.track.strict() && self.rules.controller != Some(Controller::LinuxCnc)
+    }
+
     /// The G words: modes at once, the rest as a plan.
     fn modal(&mut self, block: &Block) -> Result<Plan, Located> {
         let mut plan = Plan::default();
@@ -206,6 +224,10 @@ impl Reader {
                         && self.modes.motion != Some(motion)
                     {
                         self.begin_cycle();
+                        let plain = |motion: &MotionMode| {
+                            matches!(motion, MotionMode::Rapid | MotionMode::Feed | MotionMode::Arc { .. })
+                        };
+                        self.modes.before_cycle = self.modes.motion.filter(plain).or(self.modes.before_cycle);
                     }
                     self.modes.motion = Some(motion);
                 }
@@ -234,7 +256,10 @@ impl Reader {
                     }
                 }
                 Code::Absolute(absolute) => self.modes.absolute = absolute,
-                Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
+                Code::AbsoluteCentres(absolute) => {
+                    self.modes.absolute_centres = absolute;
+                    self.seen.centres = true;
+                }
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::ChangeTool => plan.changes_tool = true,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,

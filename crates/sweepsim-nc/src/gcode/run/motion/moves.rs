@@ -256,6 +256,7 @@ impl Reader {
                     (false, cu, cv) => [start[u] + cu.unwrap_or(0.0), start[v] + cv.unwrap_or(0.0)],
                 };
                 let arc = CircularArc::about(ends, plane, centre, counter_clockwise, turns);
+                self.seen.odd_arcs |= arc.is_err() && !self.seen.centres;
                 match (arc, words[w].filter(|offset| *offset != 0.0)) {
                     (Ok(arc), Some(height)) => {
                         let absolute = self.modes.absolute_centres.then_some(height);
