@@ -28,7 +28,7 @@ const EXPECTED: &str =
 ///
 /// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
 /// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) or APT (`.apt`, `.cls`, `.clsf`, `.ncl`) are read as such if the content is not
-/// distinctive; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Siemens's and Heidenhain's
+/// distinctive, and `.mpf` and `.spf` with values by `=` as Siemens's; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Siemens's and Heidenhain's
 /// programs call others that lie beside them.
 ///
 /// # Errors
@@ -151,6 +151,7 @@ fn read_bytes(
     }
     match Content::of(&text) {
         Content::Siemens => read_siemens(),
+        Content::Gcode if matches!(extension, Some("mpf" | "spf")) && assigns(&text) => read_siemens(),
         Content::Table => read_table(),
         Content::Gcode => gcode::read_at(&text, file, options),
         Content::Apt { .. } => apt::read(&text, options),
@@ -172,6 +173,12 @@ fn read_bytes(
             Err(NcError::new(problem, None))
         }
     }
+}
+
+/// Whether a text has values by `=`, as Siemens's programs have.
+fn assigns(text: &str) -> bool {
+    text.lines()
+        .any(|line| line.split([';', '(']).next().is_some_and(|code| code.contains('=')))
 }
 
 fn unit(options: &ReadOptions) -> f64 {

@@ -54,7 +54,9 @@ impl Track {
     /// Whether a move of the tool is kept instead of being made.
     pub(in crate::drive) fn keeps(&mut self, stroke: &Stroke) -> bool {
         let from = self.xyz.map(|x| x.unwrap_or(0.0));
-        let Some(recording) = &mut self.recording else { return false };
+        let Some(recording) = &mut self.recording else {
+            return false;
+        };
         recording.strokes.push((from, *stroke));
         self.arrive(stroke.end, stroke.abc);
         true

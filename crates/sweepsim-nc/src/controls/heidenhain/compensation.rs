@@ -19,6 +19,10 @@ impl Reader<'_> {
         if self.uncertain && self.track.known().is_none() {
             return Ok(());
         }
+        if self.track.is_recording() {
+            self.modes.compensated = Some(left);
+            return self.track.compensate(self.side(left, 0.0), self.modes.plane);
+        }
         let Some(tool) = self.track.tool.or(Some(0).filter(|_| !self.track.strict())) else {
             let problem = "cutter compensation without a tool: expected TOOL CALL before it";
             return Err(NcProblem::syntax(problem));
@@ -29,15 +33,18 @@ impl Reader<'_> {
             ))
         })?;
         self.modes.compensated = Some(left);
-        let side = CompensationSettings {
+        self.track.compensate(self.side(left, radius), self.modes.plane)
+    }
+
+    fn side(&self, left: bool, radius: f64) -> CompensationSettings {
+        CompensationSettings {
             left: left == (radius >= 0.0),
             radius: radius.abs(),
             corners: Corners::Arcs,
             beside_next: true,
             round_ends: false,
             tangent: 1e-6,
-        };
-        self.track.compensate(side, self.modes.plane)
+        }
     }
 
     /// The radius of the tool with the oversize of its call. `unknown`: its diameter where nobody tells it, in mm.

@@ -29,7 +29,9 @@ impl ContourData {
         }
         let words: Vec<&str> = line.tokens.iter().skip(3).map(|token| token.text.as_str()).collect();
         let text = words.join(" ");
-        let numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|digits| !digits.is_empty());
+        let numbers = text
+            .split(|c: char| !c.is_ascii_digit())
+            .filter(|digits| !digits.is_empty());
         self.labels.extend(numbers.map(str::to_owned));
     }
 }
@@ -138,7 +140,9 @@ impl Reader<'_> {
         let fail = |problem| (problem, 0..0);
         let routine = self.stack.last().map_or(0, |level| level.routine);
         let Some(&next) = self.routines[routine].labels.get(label) else {
-            return Err(fail(NcProblem::syntax(format!("there is no LBL {label} in this program"))));
+            return Err(fail(NcProblem::syntax(format!(
+                "there is no LBL {label} in this program"
+            ))));
         };
         self.track.record_moves().map_err(fail)?;
         let (depth, compensated) = (self.stack.len(), self.modes.compensated);

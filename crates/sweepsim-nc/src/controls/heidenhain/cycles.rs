@@ -36,7 +36,11 @@ impl Defined<'_> {
         let name = format!("Q{parameter}=");
         for (index, token) in self.line.tokens.iter().enumerate() {
             if let Some(rest) = token.text.strip_prefix(&name) {
-                let text = if rest.is_empty() { self.line.word(index + 1) } else { rest };
+                let text = if rest.is_empty() {
+                    self.line.word(index + 1)
+                } else {
+                    rest
+                };
                 return match self.parameters.value(text) {
                     Ok(value) => Ok(Some(value)),
                     // FMAX, FAUTO.
@@ -65,8 +69,11 @@ impl Defined<'_> {
 
     pub fn need(&self, parameter: u32) -> Result<f64, Located> {
         let number = self.number;
-        let problem =
-            || NcProblem::syntax(format!("cycle {number} without Q{parameter}: expected Q{parameter}= a number"));
+        let problem = || {
+            NcProblem::syntax(format!(
+                "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
+            ))
+        };
         self.length(parameter)?.ok_or_else(|| self.fail(problem()))
     }
 

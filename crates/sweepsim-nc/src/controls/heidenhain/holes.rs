@@ -26,8 +26,9 @@ impl Reader<'_> {
         let hole = hole(&defined, tool)?;
         let front = defined.find(359)?.is_some_and(|_| matches!(number, 263..=267)) && defined.span(358)? != 0.0;
         if front {
-            self.track
-                .note(format!("the countersink at the front (Q358) of cycle {number} is left out"));
+            self.track.note(format!(
+                "the countersink at the front (Q358) of cycle {number} is left out"
+            ));
         }
         Ok(hole)
     }
@@ -157,17 +158,18 @@ fn back_boring(
 /// Around in the hole (208, 262 to 265), or around the stud (267).
 fn helix(defined: &Defined, tool: Option<f64>, hole: &HoleCycle) -> Result<HoleWork, Located> {
     let number = defined.number;
-    let (diameter, pitch) = (
-        defined.need(335)?,
-        defined.need(if number == 208 { 334 } else { 239 })?,
-    );
+    let (diameter, pitch) = (defined.need(335)?, defined.need(if number == 208 { 334 } else { 239 })?);
     let Some(tool) = tool else {
         return Err(defined.fail(NcProblem::syntax(format!(
             "the radius of the tool of cycle {number} is not known: expected it in the tool table, or TOOL DEF … R"
         ))));
     };
     let outside = number == 267;
-    let radius = if outside { 0.5 * diameter + tool } else { 0.5 * diameter - tool };
+    let radius = if outside {
+        0.5 * diameter + tool
+    } else {
+        0.5 * diameter - tool
+    };
     if !(radius > 0.0 && pitch != 0.0) {
         let problem = NcProblem::value(
             format!("the hole of cycle {number}"),

@@ -338,12 +338,16 @@ impl Reader<'_> {
                 let known = axis.and_then(|k| *self.track.xyz.get(k.checked_sub(1)?)?);
                 if known.is_none() && self.options.strict {
                     let found = format!("reading {of} is");
-                    return Err(whole(NcProblem::unsupported(found, "only the control knows it; expected a number")));
+                    return Err(whole(NcProblem::unsupported(
+                        found,
+                        "only the control knows it; expected a number",
+                    )));
                 }
                 if known.is_none() {
                     let settle = format!("{name} = … in the program");
                     let what = format!("what the control knows of {of}");
-                    self.track.assume(Assumption::new(what, format!("0, as {name}"), settle));
+                    self.track
+                        .assume(Assumption::new(what, format!("0, as {name}"), settle));
                 }
                 let value = known.map_or(0.0, |mm| mm / self.unit());
                 self.parameters.set(&name, value).map_err(whole)?;

@@ -201,7 +201,11 @@ impl Reader<'_> {
             return Ok(());
         }
         let Some(target) = self.target(&words, kind, line)? else {
-            return if calls { self.call_cycle().map_err(whole) } else { Ok(()) };
+            return if calls {
+                self.call_cycle().map_err(whole)
+            } else {
+                Ok(())
+            };
         };
         self.corner_ahead(words.rapid, abc)?;
         match kind {

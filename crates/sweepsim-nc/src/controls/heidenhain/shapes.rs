@@ -181,7 +181,11 @@ fn face(defined: &Defined, tool: f64, [x, y]: [f64; 2]) -> Result<Pocket, Locate
     }
     let clearance = defined.need(200)?.abs();
     // At once where there is nothing to take between both levels.
-    let surface = if top > bottom { top } else { bottom + clearance.max(1e-3) };
+    let surface = if top > bottom {
+        top
+    } else {
+        bottom + clearance.max(1e-3)
+    };
     let shape = levels(defined, tool)?;
     Ok(Pocket {
         half: bounds.map(|[low, high]| 0.5 * (high - low)),

@@ -353,9 +353,7 @@ mod tests {
             assert!((parameters.value(name).unwrap() - expected).abs() < 1e-12, "{text}");
         }
         assert_eq!(
-            parameters
-                .function(&line("FN 9: IF +Q1 EQU +5 GOTO LBL 3"))
-                .unwrap(),
+            parameters.function(&line("FN 9: IF +Q1 EQU +5 GOTO LBL 3")).unwrap(),
             Jump::To("3".into())
         );
         assert_eq!(
@@ -368,10 +366,7 @@ mod tests {
                 "FN 1: Q1 = +Q99 + +1",
                 "Q99 has no value here: expected Q99 = a number before it",
             ),
-            (
-                "FN 39: Q1 = 2",
-                "FN 39 is not supported yet: expected FN 0 to FN 38",
-            ),
+            ("FN 39: Q1 = 2", "FN 39 is not supported yet: expected FN 0 to FN 38"),
         ] {
             assert_eq!(parameters.function(&line(text)).unwrap_err().0.to_string(), message);
         }

@@ -208,7 +208,11 @@ fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Op
     let (end, surface) = (arguments.need(2, "RP")?, arguments.need(3, "Z0")?);
     // Whether it is a depth or a level is in a later parameter that posts fill in differently: a level above the surface is none.
     let bottom = arguments.need(5, "Z1")?;
-    let bottom = if bottom < surface { bottom } else { surface - bottom.abs() };
+    let bottom = if bottom < surface {
+        bottom
+    } else {
+        surface - bottom.abs()
+    };
     let islands = courses.split_off(1);
     let all_closed = courses.iter().chain(&islands).all(Course::is_closed);
     if !all_closed || !(matches!(kind, 1.0 | 3.0 | 4.0) && bottom < surface) {

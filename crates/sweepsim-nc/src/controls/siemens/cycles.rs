@@ -71,12 +71,7 @@ pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Re
 
 /// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;
 /// `CYCLE78(RTP, RFP, SDIS, DP, ADPR, FDPR, LDPR, DIAM, PIT, PITA, …)`: a hole that is drilled and threaded by the same tool. The helix is made over the whole depth.
-pub(super) fn thread(
-    name: &str,
-    arguments: &[Option<f64>],
-    unit: f64,
-    tool: f64,
-) -> Result<Vec<HoleCycle>, NcProblem> {
+pub(super) fn thread(name: &str, arguments: &[Option<f64>], unit: f64, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
     let get = |index: usize| arguments.get(index).copied().flatten();
     let need = |index: usize, parameter: &str| {
         let value = get(index).map(|value| value * unit);
@@ -93,8 +88,14 @@ pub(super) fn thread(
         false => 0.5 * diameter - tool,
     };
     if !(radius > 0.0 && pitch > 0.0 && bottom < surface) {
-        let found = format!("{diameter} mm wide, {} mm deep, with a pitch of {pitch} mm", surface - bottom);
-        let expected = format!("wider than the tool, {} mm, below its surface, with a pitch", 2.0 * tool);
+        let found = format!(
+            "{diameter} mm wide, {} mm deep, with a pitch of {pitch} mm",
+            surface - bottom
+        );
+        let expected = format!(
+            "wider than the tool, {} mm, below its surface, with a pitch",
+            2.0 * tool
+        );
         return Err(NcProblem::value(format!("the thread of {name}"), found, expected));
     }
     let hole = HoleCycle {

@@ -113,7 +113,11 @@ impl Track {
         }
         let what = format!("the moves of {name}, a program that is missing");
         let taken = "left out; where the tool is then is known again from the next moves";
-        self.assume(Assumption::new(what, taken, format!("a file {file} beside the program")));
+        self.assume(Assumption::new(
+            what,
+            taken,
+            format!("a file {file} beside the program"),
+        ));
         self.leave([true; 3]);
         Ok(())
     }

@@ -57,7 +57,11 @@ impl Course {
             }
             points.push(end);
             if points.len() > MOST {
-                return Err(NcProblem::value("the chords of a contour", points.len(), format!("at most {MOST}")));
+                return Err(NcProblem::value(
+                    "the chords of a contour",
+                    points.len(),
+                    format!("at most {MOST}"),
+                ));
             }
         }
         points.dedup_by(|a, b| distance(*a, *b) <= TOUCH);
@@ -68,7 +72,9 @@ impl Course {
     }
 
     pub fn is_closed(&self) -> bool {
-        let [first, .., last] = &self.points[..] else { return false };
+        let [first, .., last] = &self.points[..] else {
+            return false;
+        };
         distance(*first, *last) <= radius_slack(1.0)
     }
 
@@ -87,9 +93,8 @@ impl Course {
     }
 
     fn holds(&self, [x, y]: Flat) -> bool {
-        let crosses = |[a, b]: [Flat; 2]| {
-            (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-        };
+        let crosses =
+            |[a, b]: [Flat; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
         self.edges().filter(|edge| crosses(*edge)).count() % 2 == 1
     }
 }
@@ -206,7 +211,11 @@ fn beside(course: &Course, left: bool, off: f64) -> Vec<[Flat; 2]> {
         };
         // Around a corner on the tool's side, outside of the circle about it.
         let turn = (angle(next) - direction).rem_euclid(std::f64::consts::TAU);
-        let turn = if turn > std::f64::consts::PI { turn - std::f64::consts::TAU } else { turn };
+        let turn = if turn > std::f64::consts::PI {
+            turn - std::f64::consts::TAU
+        } else {
+            turn
+        };
         if turn * side < 0.0 && off > 0.0 {
             let least = 2.0 * (1.0 - (CHORDS / off).min(1.0)).acos().max(LEAST_TURN);
             let parts = (turn.abs() / least).ceil().max(1.0);
@@ -278,11 +287,19 @@ fn parallels(edges: &[[Flat; 2]], off: f64, step: f64) -> Result<Vec<[Flat; 2]>,
     }
     let count = ((y1 - y0) / step).ceil();
     if !(count < MOST as f64) {
-        return Err(NcProblem::value("the lines of an area", count, format!("at most {MOST}")));
+        return Err(NcProblem::value(
+            "the lines of an area",
+            count,
+            format!("at most {MOST}"),
+        ));
     }
     let line = |k: usize| {
         let y = y0 + (y1 - y0) * k as f64 / count.max(1.0);
-        if k % 2 == 0 { [[x0, y], [x1, y]] } else { [[x1, y], [x0, y]] }
+        if k % 2 == 0 {
+            [[x0, y], [x1, y]]
+        } else {
+            [[x1, y], [x0, y]]
+        }
     };
     Ok((0..=count as usize).map(line).collect())
 }
@@ -328,7 +345,9 @@ impl Track {
         self.line(here.point([0.0; 2], pocket.start), self.abc, true)?;
         for level in levels {
             for way in &ways {
-                let (Some(first), Some(last)) = (way.first(), way.last()) else { continue };
+                let (Some(first), Some(last)) = (way.first(), way.last()) else {
+                    continue;
+                };
                 self.line(place.point(*first, pocket.start), self.abc, true)?;
                 self.feed = pocket.plunge.or(pocket.feed).or(modal);
                 self.line(place.point(*first, level), self.abc, false)?;

@@ -19,11 +19,10 @@ use crate::gcode::offsets::Offsets;
 use crate::gcode::okuma;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
-use crate::gcode::syntax::{title, words};
+use crate::gcode::syntax::{title, user_task, words};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
-use crate::model::read_options::{Controller, ReadOptions};
-use crate::text::assumption::Assumption;
+use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcError, NcProblem};
 
 /// The most problems after the first one.
@@ -147,13 +146,6 @@ fn read_once(input: &Input, options: &ReadOptions, trace: bool, reading: Reading
     let mut reader = Reader::new(input, options);
     reader.tools.wear_alone = reading.wear_alone;
     reader.modes.absolute_centres = reading.absolute_centres;
-    if reading.absolute_centres {
-        let what = "the centres of arcs (I, J, K)";
-        let taken = "absolute coordinates: taken from the start of each arc, some have no radius";
-        reader
-            .track
-            .assume(Assumption::new(what, taken, "G90.1 or G91.1 in the program"));
-    }
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
@@ -328,12 +320,20 @@ impl Reader {
             self.track.note("optional blocks (`/`) are skipped");
             return Ok(Step::Next);
         }
-        if let Some(call) = okuma::call(line).filter(|_| self.rules.controller == Some(Controller::Okuma)) {
+        let call = okuma::call(line).filter(|call| self.has_user_task() && call.trim_start().starts_with("OO"));
+        if let Some(call) = call {
             self.track.begin_block();
             return self
                 .call_okuma(call)
                 .map(|()| Step::Next)
                 .map_err(|problem| (problem, 0..line.len()));
+        }
+        if self.has_user_task()
+            && let Some(statement) = user_task::statement(line)
+        {
+            self.seen.begun = true;
+            block.clear();
+            return self.user_task(statement, here, block);
         }
         if let Some(cursor) = after_letter(line) {
             self.seen.begun = true;

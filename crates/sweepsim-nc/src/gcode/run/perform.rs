@@ -146,12 +146,15 @@ impl Reader {
                 }
                 Ok(())
             }
-            (Some(_), None) if plan.machine_coordinates && self.starts_in_rapid() => self
-                .go_in_machine_coordinates(MotionMode::Rapid, block)
-                .map_err(whole),
+            (Some(_), None) if plan.machine_coordinates && self.starts_in_rapid() => {
+                self.go_in_machine_coordinates(MotionMode::Rapid, block).map_err(whole)
+            }
             (Some(_), None) if self.starts_in_rapid() => {
                 let motion = self.modes.before_cycle.unwrap_or_else(|| {
-                    let (what, taken) = ("the kind of moves before the first motion code", "G0, as most controls start");
+                    let (what, taken) = (
+                        "the kind of moves before the first motion code",
+                        "G0, as most controls start",
+                    );
                     self.track.assume(Assumption::new(what, taken, "G0 or G1 before them"));
                     MotionMode::Rapid
                 });
@@ -192,7 +195,7 @@ impl Reader {
     }
 
     /// Whether moves without a motion code are those that the control starts with: LinuxCNC has none, and strict readers.
-    fn starts_in_rapid(&self) -> bool {
+    pub(crate) fn starts_in_rapid(&self) -> bool {
         !self.track.strict() && self.rules.controller != Some(Controller::LinuxCnc)
     }
 

@@ -126,7 +126,7 @@ impl Reader {
         let names = match label {
             // No way out of the folder.
             Label::Name(name) if name.contains(['/', '\\', '\0']) || name.starts_with('.') => return Ok(()),
-            Label::Name(name) => vec![name.clone()],
+            Label::Name(name) => vec![name.clone(), format!("O{name}")],
             Label::Number(number) => vec![
                 format!("{number}"),
                 format!("O{number:04}"),
@@ -136,7 +136,9 @@ impl Reader {
                 format!("{number:04}"),
             ],
         };
-        let extensions = [".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ""];
+        let extensions = [
+            ".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ".SUB", ".SSB", ".MIN", ".LIB", "",
+        ];
         for folder in &self.texts.folders {
             for (name, extension) in names.iter().flat_map(|name| extensions.iter().map(move |e| (name, e))) {
                 let path = folder.join(format!("{name}{extension}"));
