@@ -151,7 +151,9 @@ fn read_bytes(
     }
     match Content::of(&text) {
         Content::Siemens => read_siemens(),
-        Content::Gcode if matches!(extension, Some("mpf" | "spf")) && assigns(&text) => read_siemens(),
+        Content::Gcode | Content::Unknown if matches!(extension, Some("mpf" | "spf")) && assigns(&text) => {
+            read_siemens()
+        }
         Content::Table => read_table(),
         Content::Gcode => gcode::read_at(&text, file, options),
         Content::Apt { .. } => apt::read(&text, options),
