@@ -18,7 +18,9 @@ pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
-pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
+pub(crate) use contour::{
+    ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, NARROW, ProgramPlace, Stroke,
+};
 pub(crate) use cycles::{
     ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,
 };

@@ -181,6 +181,24 @@ fn a_register_is_the_size_of_the_tool() {
 }
 
 #[test]
+fn both_readings_of_a_register_are_compared() {
+    // Down a neck, around the belly of a bottle and up again: 6 mm does not fit between both sides of a neck of 4 mm.
+    let inside = |neck: f64| {
+        let text = format!(
+            "(T3 D=6. CR=0. - flat end mill)\nT3 M6\nG0 X0 Y60 Z0\nG41 D3 G1 X-{neck} Y40 F100\nY20\nX-20\nY0\nX20\nY20\nX{neck}\nY40\n\
+             G40 X0 Y60\nM30\n"
+        );
+        let program = read(&text);
+        assert!(only(&program).taken.starts_with("the size of tool 3"));
+        let notes = program.notes.iter().map(ToString::to_string);
+        notes.filter(|note| note.contains("say by --diameters")).collect::<Vec<_>>()
+    };
+    let [warning] = &inside(2.0)[..] else { panic!("{:?}", inside(2.0)) };
+    assert!(warning.contains("a register (D3) has a place") && warning.starts_with("line "), "{warning}");
+    assert!(inside(5.0).is_empty());
+}
+
+#[test]
 fn a_contour_too_narrow_for_the_tool_is_its_own_path() {
     // A slot's end of 2 mm radius, by a tool of 6 mm: the register cannot be its size.
     let text = "(T3 D=6. CR=0. - flat end mill)\nT3 M6\nG0 X-20 Y-10 Z0\nG41 D3 G1 X-20 Y0 F100\nX0\nG2 X0 Y-4 J-2\nG3 X0 Y-8 J-2\nG1 X-20\nG40 Y-10\nM30\n";

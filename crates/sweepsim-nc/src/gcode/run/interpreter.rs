@@ -10,7 +10,7 @@ use super::control::variables::Store;
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
-use crate::drive::{Canonical, ProgramPlace, Trace, Track};
+use crate::drive::{Canonical, NARROW, ProgramPlace, Trace, Track};
 use crate::gcode::dialect::Rules;
 use crate::gcode::flow::keywords::{after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
@@ -21,7 +21,7 @@ use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, user_task, words};
 use crate::model::names::Format;
-use crate::model::program::{Program, Units};
+use crate::model::program::{Note, Program, Units};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcError, NcProblem};
 
@@ -114,7 +114,7 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         wear_alone: options.wear_registers,
         absolute_centres: false,
     };
-    let outcome = read_once(input, options, trace, as_said);
+    let mut outcome = read_once(input, options, trace, as_said);
     // Contours that cannot be offset by the tool's radius are those of the tool itself; arcs that have no radius have absolute centres.
     let centres = outcome.odd_arcs && !options.strict;
     let wear = outcome.assumed && !as_said.wear_alone;
@@ -130,7 +130,40 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         let other = read_once(input, options, trace, other);
         other.program.is_ok().then_some(other)
     });
+    if let (None, true, Ok(program)) = (&found, wear, &mut outcome.program) {
+        let as_wear = Reading {
+            wear_alone: true,
+            ..as_said
+        };
+        compare_registers(program, || read_once(input, options, false, as_wear).program.ok());
+    }
     found.unwrap_or(outcome)
+}
+
+/// Warns where registers D that were taken for the sizes of their tools make these go into their own contours, and as wear they do not.
+fn compare_registers(program: &mut Program, as_wear: impl FnOnce() -> Option<Program>) {
+    let narrow = |program: &Program| {
+        let notes = program.notes.iter().filter(|note| note.message.contains(NARROW));
+        let lines: Vec<usize> = notes.map(|note| note.line).collect();
+        (lines.first().copied(), lines.len())
+    };
+    let (Some(line), count) = narrow(program) else { return };
+    let registers: Vec<&str> = program
+        .assumptions
+        .iter()
+        .filter(|one| one.what.starts_with('D') && one.taken.starts_with("the size of"))
+        .map(|one| one.what.as_str())
+        .collect();
+    if registers.is_empty() || as_wear().is_none_or(|other| narrow(&other).1 >= count) {
+        return;
+    }
+    let (places, registers) = (if count == 1 { "a place" } else { "places" }, registers.join(", "));
+    let message = format!(
+        "as the size of its tool, a register ({registers}) has {places} where the tool does not fit into its own contour, as its wear, 0, fewer or none: \
+         say by --diameters what it is, and compare"
+    );
+    program.notes.push(Note::new(line, message));
+    program.notes.sort_by_key(|note| note.line);
 }
 
 /// How a program is read where controls differ, and it does not say how.
