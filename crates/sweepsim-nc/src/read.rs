@@ -149,6 +149,14 @@ fn read_bytes(
         Some(Controller::Heidenhain) => return read_heidenhain(),
         _ => {}
     }
+    // Okuma's programs say what they are by their names alone.
+    let okuma = matches!(extension, Some("min" | "ssb")).then(|| ReadOptions {
+        controller: options.controller.or(Some(Controller::Okuma)),
+        ..options.clone()
+    });
+    if let Some(options) = okuma {
+        return gcode::read_at(&text, file, &options);
+    }
     match Content::of(&text) {
         Content::Siemens => read_siemens(),
         Content::Gcode | Content::Unknown if matches!(extension, Some("mpf" | "spf")) && assigns(&text) => {

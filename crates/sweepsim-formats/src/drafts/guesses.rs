@@ -195,7 +195,10 @@ impl Drafter<'_> {
             high[2] = low[2] + margin;
         }
         let top = match faced {
-            Some(top) => format!("its top at z = {}, a level above the highest cut to the side", rounded(top)),
+            Some(top) => format!(
+                "its top at z = {}, a level above the highest cut to the side",
+                rounded(top)
+            ),
             None if at_zero => "its top at z = 0".to_owned(),
             None => "its top at the highest of them".to_owned(),
         };
@@ -259,6 +262,10 @@ fn faced_from(poses: impl Iterator<Item = ProgramPose>) -> Option<f64> {
         }
     }
     let [level, start] = highest;
-    let top = if next.is_finite() { (2.0 * level - next).min(start) } else { level };
+    let top = if next.is_finite() {
+        (2.0 * level - next).min(start)
+    } else {
+        level
+    };
     (level > SAME).then_some(top)
 }

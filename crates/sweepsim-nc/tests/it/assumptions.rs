@@ -191,10 +191,17 @@ fn both_readings_of_a_register_are_compared() {
         let program = read(&text);
         assert!(only(&program).taken.starts_with("the size of tool 3"));
         let notes = program.notes.iter().map(ToString::to_string);
-        notes.filter(|note| note.contains("say by --diameters")).collect::<Vec<_>>()
+        notes
+            .filter(|note| note.contains("say by --diameters"))
+            .collect::<Vec<_>>()
     };
-    let [warning] = &inside(2.0)[..] else { panic!("{:?}", inside(2.0)) };
-    assert!(warning.contains("a register (D3) has a place") && warning.starts_with("line "), "{warning}");
+    let [warning] = &inside(2.0)[..] else {
+        panic!("{:?}", inside(2.0))
+    };
+    assert!(
+        warning.contains("a register (D3) has a place") && warning.starts_with("line "),
+        "{warning}"
+    );
     assert!(inside(5.0).is_empty());
 }
 

@@ -1,6 +1,7 @@
 //! Integration tests of `sweepsim-nc`, in one binary: it links once.
 
 mod accelerations;
+mod approaches;
 mod apt;
 mod assumptions;
 mod cam_klartext;
@@ -30,4 +31,5 @@ mod tables;
 mod tilted_turns;
 mod tools;
 mod turning_arcs;
+mod words_of_shops;
 mod written;

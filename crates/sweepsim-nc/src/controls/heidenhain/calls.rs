@@ -62,7 +62,11 @@ impl Reader<'_> {
     }
 
     pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
-        let path = line.word(2).trim_matches('"').trim_end_matches(".H");
+        self.call_path(line.word(2), line)
+    }
+
+    pub(super) fn call_path(&mut self, path: &str, line: &Line) -> Result<(), Located> {
+        let path = path.trim_matches('"').trim_end_matches(".H");
         // Folders are the control's own.
         let name = path.rsplit(['\\', '/', ':']).next().unwrap_or(path).to_owned();
         let routine = match self.names.get(&name) {

@@ -66,6 +66,8 @@ pub(super) struct Reader<'a> {
     pub rounded: bool,
     pub cycles: Cycles,
     pub uncertain: bool,
+    /// The program of SEL PGM.
+    pub(super) selected: Option<String>,
     pub(super) library: Library<'a>,
     pub(super) options: &'a ReadOptions,
     pub(super) routines: Vec<Routine>,
@@ -91,6 +93,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         rounded: false,
         cycles: Cycles::default(),
         uncertain: false,
+        selected: None,
         library,
         options,
         routines: vec![Routine::new(0, Rc::clone(text))],
@@ -297,7 +300,7 @@ impl Reader<'_> {
                 apart.tokens.insert(1, line::Token { text, span });
                 self.function(&apart, routine)?;
             }
-            word if word.starts_with('Q') => self.parameters.formula(line)?,
+            word if word.starts_with('Q') && !word.starts_with("QS") => self.parameters.formula(line)?,
             "CYCL" => self.cycle_block(line)?,
             "PLANE" => self.plane_block(line)?,
             "FUNCTION" => self.function_block(line)?,
@@ -308,6 +311,16 @@ impl Reader<'_> {
             word if word.starts_with('M') && word[1..].bytes().all(|b| b.is_ascii_digit()) => {
                 self.codes(line)?;
             }
+            "APPR" | "DEP" => self.approach_block(line)?,
+            "TRANS" if line.word(1) == "DATUM" => self.datum_block(line)?,
+            "SEL" if line.word(1) == "PGM" => self.selected = Some(line.word(2).to_owned()),
+            "CALL" if line.word(1) == "SELECTED" => {
+                let path = self.selected.clone().unwrap_or_default();
+                self.call_path(&path, line)?;
+            }
+            // Tables, texts, what the control watches, and how it shows it.
+            "SEL" | "DECLARE" | "SECTION" | "MONITORING" | "POLARKIN" | "QS" => self.ignore(line),
+            word if word.starts_with("QS") => self.ignore(line),
             "TCH" => {
                 let taken = "its cycle cuts nothing: left out";
                 let assumption = Assumption::new("what a probe finds", taken, "a program without probing");
@@ -324,6 +337,12 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// A block that moves nothing.
+    fn ignore(&mut self, line: &Line) {
+        self.track
+            .note(format!("{} {} moves nothing: ignored", line.word(0), line.word(1)));
     }
 
     fn function(&mut self, line: &Line, routine: usize) -> Result<(), Located> {

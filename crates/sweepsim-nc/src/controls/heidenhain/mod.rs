@@ -9,6 +9,7 @@
 //! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Other cycles are errors
 //! with their position.
 
+mod approach;
 mod arcs;
 mod calls;
 mod compensation;

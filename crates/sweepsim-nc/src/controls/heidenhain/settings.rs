@@ -154,7 +154,7 @@ impl Reader<'_> {
                 3 | 13 => self.turn_spindle(Spindle::Clockwise { rpm }, line)?,
                 4 | 14 => self.turn_spindle(Spindle::CounterClockwise { rpm }, line)?,
                 5 => self.turn_spindle(Spindle::Stopped, line)?,
-                6 => {}
+                6 | 19 => {}
                 7 => self.event(EventKind::Coolant(Coolant::Mist), line)?,
                 8 => self.event(EventKind::Coolant(Coolant::Flood), line)?,
                 9 => self.event(EventKind::Coolant(Coolant::Off), line)?,
@@ -202,7 +202,11 @@ impl Reader<'_> {
         match (line.word(1), line.word(2)) {
             ("TCPM", _) => self.control(true).map_err(|problem| (problem, line.all()))?,
             ("RESET", "TCPM") => self.control(false).map_err(|problem| (problem, line.all()))?,
-            ("MODE" | "FEED" | "DWELL" | "S-PULSE", _) => {}
+            ("MODE" | "FEED" | "DWELL" | "S-PULSE" | "SPINDLE" | "TOUCHPROBE", _) => {}
+            // Whether contours are those of the tool or of the part matters to paths in space alone.
+            ("PROG", "PATH") => self
+                .track
+                .note("FUNCTION PROG PATH is ignored: contours are taken as programmed"),
             (word, _) => {
                 let problem = NcProblem::unsupported(
                     format!("FUNCTION {word} is"),

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use super::arguments::Arguments;
 use super::contour_cycles::CONTOURS;
 use super::cycles::{HOLES, hole_cycle, thread};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
-use super::milling::{MILLING, PATTERNS, workpiece};
+use super::milling::{MILLING, workpiece};
+use super::patterns::PATTERNS;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
@@ -152,7 +154,7 @@ impl Reader<'_> {
         span: &Range<usize>,
     ) -> Result<(), Located> {
         let here = |problem: NcProblem| (problem, span.clone());
-        let (name, arguments, modal) = match name {
+        let (name, given, modal) = match name {
             "CALL" | "PCALL" => {
                 return Err(here(NcProblem::unsupported(
                     "CALL is",
@@ -161,36 +163,35 @@ impl Reader<'_> {
             }
             _ => (name, arguments, self.modal_word(span)),
         };
-        let values = self.values(arguments)?;
+        let values = self.values(given)?;
         let known = self.knows(name);
-        if let (false, true) = (known, CONTOURS.contains(&name)) {
+        let unit = self.modes.unit();
+        let cycle = Arguments {
+            name,
+            values: &values,
+            unit,
+        };
+        if !known && CONTOURS.contains(&name) {
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
-            return self.contour_cycle(name, &values).map_err(here);
+            return self.contour_cycle(&cycle).map_err(here);
         }
         if !known && (name.starts_with("CYCLE") || MILLING.contains(&name) || PATTERNS.contains(&name)) {
-            let numbers: Vec<Option<f64>> = values
-                .iter()
-                .map(|value| match value {
-                    Some(Value::Number(number)) => Some(*number),
-                    _ => None,
-                })
-                .collect();
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
-            if self.places(name, &numbers).map_err(here)? || self.mill(name, &numbers).map_err(here)? {
+            if self.places(&cycle).map_err(here)? || self.mill(&cycle).map_err(here)? {
                 return Ok(());
             }
-            let unit = self.modes.unit();
+            let arguments = cycle;
             let cycle = match name {
-                _ if HOLES.contains(&name) => Cycle::Holes(vec![hole_cycle(name, &numbers, unit).map_err(here)?]),
+                _ if HOLES.contains(&name) => Cycle::Holes(vec![hole_cycle(&arguments).map_err(here)?]),
                 "CYCLE70" | "CYCLE78" => {
                     let tool = self.cutter_radius(UNKNOWN_TOOL).map_err(here)?;
-                    Cycle::Holes(thread(name, &numbers, unit, tool).map_err(here)?)
+                    Cycle::Holes(thread(&arguments, tool).map_err(here)?)
                 }
                 _ => Cycle::Unknown(name.to_owned()),
             };
-            if let ("CYCLE70", false) = (name, modal) {
-                let [x, y] = [12, 13].map(|index| numbers.get(index).copied().flatten().unwrap_or(0.0) * unit);
-                self.go_to_place([x, y], f64::NEG_INFINITY).map_err(here)?;
+            if name == "CYCLE70" && !modal {
+                let place = [12, 13].map(|index| arguments.length(index));
+                self.go_to_place(place, f64::NEG_INFINITY).map_err(here)?;
             }
             if modal {
                 self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
@@ -203,7 +204,7 @@ impl Reader<'_> {
         }
         if !known {
             // A cycle of the machine's builder or of ShopMill has arguments; a subprogram may have, too.
-            return match arguments {
+            return match given {
                 Some(_) => self.track.leave_out_cycle(name),
                 None => self.track.leave_out_program(name, &format!("{name}.SPF")),
             }

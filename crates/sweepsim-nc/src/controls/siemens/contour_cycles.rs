@@ -2,8 +2,8 @@
 //!
 //! Source: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Manual Job Planning*, as posts write it too.
 
+use super::arguments::Arguments;
 use super::interpreter::{Level, Reader};
-use super::language::expression::Value;
 use super::language::structures::Search;
 use crate::controls::run::Running;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
@@ -29,48 +29,12 @@ struct Named {
     labels: Option<[String; 2]>,
 }
 
-struct Arguments<'a> {
-    name: &'a str,
-    values: &'a [Option<Value>],
-    unit: f64,
-}
-
-impl Arguments<'_> {
-    fn text(&self, index: usize) -> Option<String> {
-        match self.values.get(index)? {
-            Some(Value::Text(text)) if !text.is_empty() => Some(text.to_ascii_uppercase()),
-            _ => None,
-        }
-    }
-
-    fn number(&self, index: usize) -> Option<f64> {
-        match self.values.get(index)? {
-            Some(Value::Number(number)) => Some(*number),
-            _ => None,
-        }
-    }
-
-    fn length(&self, index: usize) -> f64 {
-        self.number(index).unwrap_or(0.0) * self.unit
-    }
-
-    fn feed(&self, index: usize) -> Option<f64> {
-        self.number(index).filter(|feed| *feed > 0.0)
-    }
-
-    fn need(&self, index: usize, parameter: &str) -> Result<f64, NcProblem> {
-        let name = self.name;
-        let problem = || NcProblem::syntax(format!("{name} without {parameter}: expected a number"));
-        self.number(index).map(|value| value * self.unit).ok_or_else(problem)
-    }
-}
-
 impl Named {
     /// `CYCLE62(KNAME, TYPE, LAB1, LAB2)`: a subprogram (0), a contour between `E_LAB_A_` and `E_LAB_E_` (1), between labels (2), of a subprogram (3).
     fn of(arguments: &Arguments) -> Option<Self> {
         let name = arguments.text(0);
         let labels = || Some([arguments.text(2)?, arguments.text(3)?]);
-        Some(match arguments.number(1).unwrap_or(0.0) {
+        Some(match arguments.get(1).unwrap_or(0.0) {
             0.0 => Self {
                 program: Some(name?),
                 labels: None,
@@ -95,14 +59,13 @@ impl Named {
 }
 
 impl Reader<'_> {
-    pub(super) fn contour_cycle(&mut self, name: &str, values: &[Option<Value>]) -> Result<(), NcProblem> {
-        let unit = self.modes.unit();
-        let arguments = Arguments { name, values, unit };
+    pub(super) fn contour_cycle(&mut self, arguments: &Arguments) -> Result<(), NcProblem> {
+        let name = arguments.name;
         if name == "CYCLE62" {
-            if std::mem::take(&mut self.contours.milled) || values.iter().all(Option::is_none) {
+            if std::mem::take(&mut self.contours.milled) || arguments.values.iter().all(Option::is_none) {
                 self.contours.named.clear();
             }
-            self.contours.named.extend(Named::of(&arguments));
+            self.contours.named.extend(Named::of(arguments));
             return Ok(());
         }
         self.contours.milled = true;
@@ -125,8 +88,8 @@ impl Reader<'_> {
         };
         let tool = self.cutter_radius(UNKNOWN_TOOL)?;
         let contours = match name {
-            "CYCLE63" => area(&arguments, courses, tool)?,
-            _ => along(&arguments, courses, tool)?,
+            "CYCLE63" => area(arguments, courses, tool)?,
+            _ => along(arguments, courses, tool)?,
         };
         let Some(contours) = contours else {
             return self.track.leave_out_cycle(name);
@@ -204,7 +167,7 @@ fn levels(end: f64, start: f64, surface: f64, bottom: f64, tool: f64) -> Pocket 
 
 /// `CYCLE63(PRG, VARI, RP, Z0, SC, Z1, F, FZ, DXY, DZ, UXY, UZ, CDIR, …)`: the last digit of `VARI` is 1 for roughing, 3 for the floor, 4 for the edge.
 fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Option<ContourCycle>, NcProblem> {
-    let kind = arguments.number(1).unwrap_or(1.0) % 10.0;
+    let kind = arguments.get(1).unwrap_or(1.0) % 10.0;
     let (end, surface) = (arguments.need(2, "RP")?, arguments.need(3, "Z0")?);
     // Whether it is a depth or a level is in a later parameter that posts fill in differently: a level above the surface is none.
     let bottom = arguments.need(5, "Z1")?;
@@ -215,7 +178,7 @@ fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Op
     };
     let islands = courses.split_off(1);
     let all_closed = courses.iter().chain(&islands).all(Course::is_closed);
-    if !all_closed || !(matches!(kind, 1.0 | 3.0 | 4.0) && bottom < surface) {
+    if !(all_closed && matches!(kind, 1.0 | 3.0 | 4.0) && bottom < surface) {
         return Ok(None);
     }
     let (step, infeed) = (arguments.length(8), arguments.length(9).abs());
@@ -248,8 +211,8 @@ fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Op
 fn along(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Option<ContourCycle>, NcProblem> {
     let [end, surface, bottom] = [(1, "RTP"), (2, "RFP"), (4, "DP")].map(|(k, name)| arguments.need(k, name));
     let (end, surface, bottom) = (end?, surface?, bottom?);
-    let finishes = arguments.number(10).is_some_and(|kind| kind % 10.0 == 2.0);
-    let side = match arguments.number(11) {
+    let finishes = arguments.get(10).is_some_and(|kind| kind % 10.0 == 2.0);
+    let side = match arguments.get(11) {
         Some(41.0) => Some(true),
         Some(42.0) => Some(false),
         _ => None,

@@ -1,5 +1,6 @@
 //! Drilling cycles.
 
+use super::arguments::Arguments;
 use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::text::error::NcProblem;
 
@@ -9,13 +10,11 @@ pub(super) const HOLES: [&str; 8] = [
 ];
 
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
-pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Result<HoleCycle, NcProblem> {
-    let get = |index: usize| arguments.get(index).copied().flatten();
+pub(super) fn hole_cycle(arguments: &Arguments) -> Result<HoleCycle, NcProblem> {
+    let (name, unit) = (arguments.name, arguments.unit);
+    let get = |index: usize| arguments.get(index);
     let length = |index: usize| get(index).map(|value| value * unit);
-    let need = |index: usize, parameter: &str| {
-        length(index).ok_or_else(|| NcProblem::syntax(format!("{name} without {parameter}: expected a number")))
-    };
-    let (retract, reference) = (need(0, "RTP")?, need(1, "RFP")?);
+    let (retract, reference) = (arguments.need(0, "RTP")?, arguments.need(1, "RFP")?);
     let clearance = length(2).unwrap_or(0.0).abs();
     // The depth is absolute, or relative to the surface.
     let depth = match (length(3), length(4)) {
@@ -71,14 +70,11 @@ pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Re
 
 /// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;
 /// `CYCLE78(RTP, RFP, SDIS, DP, ADPR, FDPR, LDPR, DIAM, PIT, PITA, …)`: a hole that is drilled and threaded by the same tool. The helix is made over the whole depth.
-pub(super) fn thread(name: &str, arguments: &[Option<f64>], unit: f64, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
-    let get = |index: usize| arguments.get(index).copied().flatten();
-    let need = |index: usize, parameter: &str| {
-        let value = get(index).map(|value| value * unit);
-        value.ok_or_else(|| NcProblem::syntax(format!("{name} without {parameter}: expected a number")))
-    };
-    let (retract, surface, bottom) = (need(0, "RTP")?, need(1, "RFP")?, need(3, "DP")?);
-    let start = surface + get(2).unwrap_or(0.0).abs() * unit;
+pub(super) fn thread(arguments: &Arguments, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
+    let name = arguments.name;
+    let get = |index: usize| arguments.get(index);
+    let need = |index: usize, parameter: &str| arguments.need(index, parameter);
+    let [retract, start, surface, bottom] = arguments.levels(None)?;
     let mills = name == "CYCLE70";
     let diameter = need(if mills { 4 } else { 7 }, "the diameter")?.abs();
     let pitch = need(if mills { 7 } else { 8 }, "PIT")?.abs();
@@ -100,7 +96,7 @@ pub(super) fn thread(name: &str, arguments: &[Option<f64>], unit: f64, tool: f64
     }
     let hole = HoleCycle {
         end: retract,
-        feed: get(if mills { 10 } else { 15 }).filter(|feed| *feed > 0.0),
+        feed: arguments.feed(if mills { 10 } else { 15 }),
         ..HoleCycle::new(start, bottom, None, false)
     };
     let around = HoleCycle {

@@ -1,26 +1,22 @@
-//! Milling cycles, and patterns of places where a cycle is called.
+//! Milling cycles.
 //!
-//! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 and CYCLE801 were
+//! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 was
 //! compared with two of them.
 
+use super::arguments::Arguments;
 use super::interpreter::Reader;
 use super::language::expression::Value;
-use super::state::Modal;
 use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::model::stock::StockDescription;
-use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// The most places of a pattern.
-const MOST_PLACES: u32 = 10_000;
+pub(super) const MOST_PLACES: u32 = 10_000;
 
 /// The milling cycles.
 pub(super) const MILLING: [&str; 8] = [
     "CYCLE61", "POCKET3", "POCKET4", "CYCLE76", "CYCLE77", "SLOT1", "SLOT2", "LONGHOLE",
 ];
-/// Where the modal cycle is called.
-pub(super) const PATTERNS: [&str; 3] = ["HOLES1", "HOLES2", "CYCLE801"];
-
 /// A milling cycle, and where its shapes are: middles in the plane, and turns; of slots on a circle, the radius of their middle lines and how long they are, in degrees.
 pub(super) struct Milled {
     pub pocket: Pocket,
@@ -28,58 +24,14 @@ pub(super) struct Milled {
     pub bent: Option<[f64; 2]>,
 }
 
-/// The arguments of a cycle.
-struct Arguments<'a> {
-    name: &'a str,
-    values: &'a [Option<f64>],
-    unit: f64,
-}
-
-impl Arguments<'_> {
-    fn get(&self, index: usize) -> Option<f64> {
-        self.values.get(index).copied().flatten()
-    }
-
-    fn length(&self, index: usize) -> f64 {
-        self.get(index).unwrap_or(0.0) * self.unit
-    }
-
-    fn need(&self, index: usize, parameter: &str) -> Result<f64, NcProblem> {
-        let name = self.name;
-        let problem = || NcProblem::syntax(format!("{name} without {parameter}: expected a number"));
-        self.get(index).map(|value| value * self.unit).ok_or_else(problem)
-    }
-
-    /// Where the tool is at last, where it begins, the surface and the bottom: RTP, RFP, SDIS, DP and, with `relative`, DPR.
-    fn levels(&self, relative: Option<usize>) -> Result<[f64; 4], NcProblem> {
-        let (retract, surface) = (self.need(0, "RTP")?, self.need(1, "RFP")?);
-        let bottom = match relative.and_then(|index| self.get(index)) {
-            Some(depth) if depth != 0.0 => surface - depth.abs() * self.unit,
-            _ => self.need(3, "DP")?,
-        };
-        Ok([retract, surface + self.length(2).abs(), surface, bottom])
-    }
-
-    /// A feed, if it is above 0.
-    fn feed(&self, index: usize) -> Option<f64> {
-        self.get(index).filter(|feed| *feed > 0.0)
-    }
-
-    /// Whether the last digit of a way of machining asks for finishing alone.
-    fn finishes(&self, index: usize) -> bool {
-        self.get(index).is_some_and(|kind| kind % 10.0 >= 2.0)
-    }
-}
-
 /// One of the [milling cycles](MILLING), with a tool of this radius; `None` for others.
-pub(super) fn milled(name: &str, values: &[Option<f64>], unit: f64, tool: f64) -> Option<Result<Milled, NcProblem>> {
-    let arguments = Arguments { name, values, unit };
-    Some(match name {
-        "POCKET3" | "CYCLE76" => rectangle(&arguments, tool),
-        "POCKET4" | "CYCLE77" => circle(&arguments, tool),
-        "SLOT1" | "LONGHOLE" => slots(&arguments, tool),
-        "SLOT2" => bent_slots(&arguments, tool),
-        "CYCLE61" => facing(&arguments, tool),
+pub(super) fn milled(arguments: &Arguments, tool: f64) -> Option<Result<Milled, NcProblem>> {
+    Some(match arguments.name {
+        "POCKET3" | "CYCLE76" => rectangle(arguments, tool),
+        "POCKET4" | "CYCLE77" => circle(arguments, tool),
+        "SLOT1" | "LONGHOLE" => slots(arguments, tool),
+        "SLOT2" => bent_slots(arguments, tool),
+        "CYCLE61" => facing(arguments, tool),
         _ => return None,
     })
 }
@@ -285,76 +237,16 @@ fn bent_slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
     })
 }
 
-/// `HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM)`, `HOLES2(CPA, CPO, RAD, STA1, INDA, NUM)`, `CYCLE801(SPCA, SPCO, STA, DIS1, DIS2, NUM1, NUM2)`: places in the plane; `None` for others.
-pub(super) fn pattern(name: &str, values: &[Option<f64>], unit: f64) -> Option<Result<Vec<[f64; 2]>, NcProblem>> {
-    let arguments = Arguments { name, values, unit };
-    let count = |index: usize| {
-        let count = arguments.get(index).unwrap_or(1.0);
-        NcProblem::whole(
-            format!("the number of places of {name}"),
-            count,
-            1..=MOST_PLACES,
-            "a whole number from 1 on",
-        )
-    };
-    let (x, y) = (arguments.length(0), arguments.length(1));
-    let turned = |angle: f64, a: f64, b: f64| {
-        let (sin, cos) = angle.to_radians().sin_cos();
-        [x + a * cos - b * sin, y + a * sin + b * cos]
-    };
-    let angle = |index: usize| arguments.get(index).unwrap_or(0.0);
-    Some(match name {
-        "HOLES1" => count(5).map(|count| {
-            let (first, step) = (arguments.length(3), arguments.length(4));
-            (0..count)
-                .map(|k| turned(angle(2), first + f64::from(k) * step, 0.0))
-                .collect()
-        }),
-        "HOLES2" => count(5).map(|count| {
-            let step = arguments
-                .get(4)
-                .filter(|step| *step != 0.0)
-                .unwrap_or(360.0 / f64::from(count));
-            let radius = arguments.length(2);
-            (0..count)
-                .map(|k| turned(angle(3) + f64::from(k) * step, radius, 0.0))
-                .collect()
-        }),
-        "CYCLE801" => count(5).and_then(|columns| {
-            let rows = count(6)?;
-            if columns.saturating_mul(rows) > MOST_PLACES {
-                return Err(NcProblem::value(
-                    "the number of places of CYCLE801",
-                    columns * rows,
-                    "at most 10000",
-                ));
-            }
-            let (across, along) = (arguments.length(3), arguments.length(4));
-            let place = |k: u32| {
-                let (row, column) = (k / columns, k % columns);
-                // To and fro.
-                let column = if row % 2 == 0 { column } else { columns - 1 - column };
-                turned(angle(2), f64::from(column) * across, f64::from(row) * along)
-            };
-            Ok((0..columns * rows).map(place).collect())
-        }),
-        _ => return None,
-    })
-}
-
 impl Reader<'_> {
     /// A milling cycle: at once, each of its shapes.
-    pub(super) fn mill(&mut self, name: &str, values: &[Option<f64>]) -> Result<bool, NcProblem> {
-        if !MILLING.contains(&name) {
-            return Ok(false);
-        }
-        let unit = self.modes.unit();
-        let Some(shape) = milled(name, values, unit, 0.0) else {
+    pub(super) fn mill(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
+        let name = arguments.name;
+        let Some(shape) = milled(arguments, 0.0) else {
             return Ok(false);
         };
         let unknown = shape?.pocket.widest_unknown_tool();
         let tool = self.cutter_radius(unknown)?;
-        let Some(milled) = milled(name, values, unit, tool) else {
+        let Some(milled) = milled(arguments, tool) else {
             return Ok(false);
         };
         let Milled {
@@ -382,41 +274,6 @@ impl Reader<'_> {
             self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)?;
         }
         Ok(true)
-    }
-
-    /// A pattern: the modal cycle at each of its places.
-    pub(super) fn places(&mut self, name: &str, values: &[Option<f64>]) -> Result<bool, NcProblem> {
-        let Some(places) = pattern(name, values, self.modes.unit()) else {
-            return Ok(false);
-        };
-        let places = places?;
-        let Some((_, Modal::Cycle(cycle))) = self.modes.modal_call.clone() else {
-            let taken = "no cycle is modal: it moves nothing";
-            self.track
-                .assume(Assumption::new(format!("what {name} calls"), taken, "MCALL before it"));
-            return Ok(true);
-        };
-        for place in places {
-            self.go_to_place(place, f64::NEG_INFINITY)?;
-            self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)?;
-        }
-        Ok(true)
-    }
-
-    /// In rapid over a place, not below a level.
-    pub(super) fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
-        let [u, v, w] = self.modes.plane;
-        let Some(mut at) = self.track.known() else {
-            // The cycle says from where it begins.
-            (self.track.xyz[u], self.track.xyz[v]) = (Some(a), Some(b));
-            return Ok(());
-        };
-        if at[w] < level {
-            at[w] = level;
-            self.track.line(at, self.track.abc, true)?;
-        }
-        (at[u], at[v]) = (a, b);
-        self.track.line(at, self.track.abc, true)
     }
 }
 

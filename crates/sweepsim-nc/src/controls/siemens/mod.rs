@@ -11,6 +11,7 @@
 //! Splines, synchronous actions and other cycles are errors with their position.
 
 mod arcs;
+mod arguments;
 mod codes;
 mod contour_cycles;
 mod contours;
@@ -20,6 +21,7 @@ mod interpreter;
 mod language;
 mod milling;
 mod moves;
+mod patterns;
 mod state;
 mod variables;
 mod words;

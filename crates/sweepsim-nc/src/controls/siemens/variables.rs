@@ -93,8 +93,17 @@ impl Reader<'_> {
     }
 
     pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
-        // The radius of a tool's edge moves nothing by itself.
-        if name.starts_with('$') && !name.starts_with("$TC_DP6[") {
+        // Timers, markers and outputs move nothing, and neither does the radius of a tool's edge by itself.
+        const STORED: [&str; 7] = [
+            "$TC_DP6[",
+            "$AC_TIMER",
+            "$AC_MARKER",
+            "$AC_PARAM",
+            "$A_OUT",
+            "$A_DB",
+            "$AN_",
+        ];
+        if name.starts_with('$') && !STORED.iter().any(|stored| name.starts_with(stored)) {
             return Err(NcProblem::unsupported(
                 format!("setting the system variable {name} is"),
                 "it could move frames or axes; expected a program without it",

@@ -295,7 +295,7 @@ fn parallels(edges: &[[Flat; 2]], off: f64, step: f64) -> Result<Vec<[Flat; 2]>,
     }
     let line = |k: usize| {
         let y = y0 + (y1 - y0) * k as f64 / count.max(1.0);
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             [[x0, y], [x1, y]]
         } else {
             [[x1, y], [x0, y]]
