@@ -1,5 +1,8 @@
 //! Program files, by content.
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -25,7 +28,7 @@ const EXPECTED: &str =
 ///
 /// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
 /// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) or APT (`.apt`, `.cls`, `.clsf`, `.ncl`) are read as such if the content is not
-/// distinctive; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Siemens's and Heidenhain's
+/// distinctive, and `.mpf` and `.spf` with values by `=` as Siemens's; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Siemens's and Heidenhain's
 /// programs call others that lie beside them.
 ///
 /// # Errors
@@ -127,19 +130,38 @@ fn read_bytes(
             Some(TextPosition::in_line(line, whole, 1, width)),
         ))
     };
-    let read_siemens = || {
-        siemens::read_kept(&text, options, &|name| {
-            beside(file, name, &["SPF", "spf", "MPF", "mpf"])
-        })
+    // What is not there is looked for once.
+    let missing: RefCell<BTreeSet<String>> = RefCell::default();
+    let beside = |name: &str, extensions: &[&str]| {
+        if missing.borrow().contains(name) {
+            return None;
+        }
+        let found = beside(file, name, extensions);
+        if found.is_none() {
+            missing.borrow_mut().insert(name.to_owned());
+        }
+        found
     };
-    let read_heidenhain = || heidenhain::read_kept(&text, options, &|name| beside(file, name, &["H", "h"]));
+    let read_siemens = || siemens::read_kept(&text, options, &|name| beside(name, &["SPF", "MPF"]));
+    let read_heidenhain = || heidenhain::read_kept(&text, options, &|name| beside(name, &["H"]));
     match options.controller {
         Some(Controller::Siemens) => return read_siemens(),
         Some(Controller::Heidenhain) => return read_heidenhain(),
         _ => {}
     }
+    // Okuma's programs say what they are by their names alone.
+    let okuma = matches!(extension, Some("min" | "ssb")).then(|| ReadOptions {
+        controller: options.controller.or(Some(Controller::Okuma)),
+        ..options.clone()
+    });
+    if let Some(options) = okuma {
+        return gcode::read_at(&text, file, &options);
+    }
     match Content::of(&text) {
         Content::Siemens => read_siemens(),
+        Content::Gcode | Content::Unknown if matches!(extension, Some("mpf" | "spf")) && assigns(&text) => {
+            read_siemens()
+        }
         Content::Table => read_table(),
         Content::Gcode => gcode::read_at(&text, file, options),
         Content::Apt { .. } => apt::read(&text, options),
@@ -163,27 +185,37 @@ fn read_bytes(
     }
 }
 
+/// Whether a text has values by `=`, as Siemens's programs have.
+fn assigns(text: &str) -> bool {
+    text.lines()
+        .any(|line| line.split([';', '(']).next().is_some_and(|code| code.contains('=')))
+}
+
 fn unit(options: &ReadOptions) -> f64 {
     if options.inch { INCH } else { 1.0 }
 }
 
-/// A program of this name beside another, in capitals or not.
+/// A program of this name beside another, in capitals or not; the first of several extensions.
 fn beside(file: Option<&Path>, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
     let file = file?;
     // Names that could lead elsewhere are none.
     if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
         return None;
     }
-    for name in [name.to_owned(), name.to_ascii_lowercase()] {
-        for extension in extensions {
-            let beside = file.with_file_name(format!("{name}.{extension}"));
-            let Ok(open) = File::open(&beside) else { continue };
-            // One that cannot be read is none: the call says so.
-            let bytes = lines::all(BufReader::new(open)).ok()?;
-            return Some((beside, String::from_utf8_lossy(&bytes).into_owned()));
-        }
-    }
-    None
+    // Controls do not tell capitals from small letters.
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+    let mut entries: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
+    entries.sort();
+    let found = extensions.iter().find_map(|extension| {
+        let wanted = format!("{name}.{extension}");
+        let is_wanted = |entry: &&OsString| entry.to_string_lossy().eq_ignore_ascii_case(&wanted);
+        entries.iter().find(is_wanted)
+    })?;
+    let beside = file.with_file_name(found);
+    // One that cannot be read is none: the call says so.
+    let bytes = lines::all(BufReader::new(File::open(&beside).ok()?)).ok()?;
+    Some((beside, String::from_utf8_lossy(&bytes).into_owned()))
 }
 
 fn utf8(bytes: &[u8]) -> Result<&str, NcError> {

@@ -186,17 +186,21 @@ impl Drafter<'_> {
             .map(|pose| pose.pose.tip()[2])
             .fold(high[2], f64::max);
         let at_zero = upright && low[2] < 0.0 && highest >= 0.0;
+        let faced = faced_from(program.poses.in_order()).filter(|_| at_zero);
         if at_zero {
-            high[2] = 0.0;
+            high[2] = faced.unwrap_or(0.0);
         }
         low[2] -= 0.1 * margin;
         if high[2] - low[2] < 0.2 * margin {
             high[2] = low[2] + margin;
         }
-        let top = if at_zero {
-            "its top at z = 0"
-        } else {
-            "its top at the highest of them"
+        let top = match faced {
+            Some(top) => format!(
+                "its top at z = {}, a level above the highest cut to the side",
+                rounded(top)
+            ),
+            None if at_zero => "its top at z = 0".to_owned(),
+            None => "its top at the highest of them".to_owned(),
         };
         let wider = rounded(margin);
         let choice = format!("a block around the feed moves, {wider} mm wider on each side, {top}");
@@ -227,4 +231,41 @@ impl Drafter<'_> {
         self.guessed.push(Guess::new("grid", choice));
         Some(cell)
     }
+}
+
+/// The top of a stock that is cut above z = 0: a level above the highest cut to the side, as far apart as the next one below it, but no higher than where the tool begins to
+/// feed down to it. A feed move to the side cuts where the tool has come down at feed; after a way up or a rapid it only leads from one cut to the next.
+fn faced_from(poses: impl Iterator<Item = ProgramPose>) -> Option<f64> {
+    const SAME: f64 = 1e-6;
+    // The highest level with where the tool has begun to come down to it, and the next one.
+    let (mut highest, mut next) = ([f64::NEG_INFINITY; 2], f64::NEG_INFINITY);
+    let mut last: Option<[f64; 3]> = None;
+    let mut above: Option<f64> = None;
+    for pose in poses {
+        let tip = pose.pose.tip();
+        let Some(from) = last.replace(tip).filter(|_| pose.joined) else {
+            above = None;
+            continue;
+        };
+        let down = from[2] - tip[2];
+        if pose.rapid || down < -SAME {
+            above = None;
+        } else if down > SAME {
+            above = above.or(Some(from[2]));
+        } else if let Some(start) = above.filter(|_| from[..2] != tip[..2]) {
+            let level = tip[2];
+            if level > highest[0] + SAME {
+                (next, highest) = (highest[0], [level, start]);
+            } else if level < highest[0] - SAME {
+                next = next.max(level);
+            }
+        }
+    }
+    let [level, start] = highest;
+    let top = if next.is_finite() {
+        (2.0 * level - next).min(start)
+    } else {
+        level
+    };
+    (level > SAME).then_some(top)
 }

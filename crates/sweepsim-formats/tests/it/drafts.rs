@@ -146,6 +146,38 @@ fn tools_of_two_programs() {
 }
 
 #[test]
+fn stock_above_zero_is_faced() {
+    let folder = tempfile::tempdir().unwrap();
+    let top = |moves: &str| {
+        let text =
+            format!("G21 G90\n(T1 D=6. CR=0. - flat end mill)\nT1 M6\nG0 X0 Y0 Z9\n{moves}G0 Z9\nG1 Z-1 F100\nX40\n");
+        let program = file(&folder, "face.nc", &text);
+        let (draft, _) = made(&program, &options(&folder));
+        let stock = guessed(&draft)
+            .into_iter()
+            .find(|guess| guess.starts_with("stock"))
+            .unwrap();
+        stock.split("its top at ").nth(1).unwrap().to_owned()
+    };
+    // Two levels 0.5 mm apart: there is as much above the first one.
+    let faced = "G1 Z1 F100\nX40\nG0 Z9\nX0\nG1 Z0.5\nX40\n";
+    assert_eq!(top(faced), "z = 1.5, a level above the highest cut to the side");
+    // No more than where the tool comes down at feed from.
+    assert_eq!(
+        top(&faced.replacen("G1 Z1", "Z1.2\nG1 Z1", 1)),
+        "z = 1.2, a level above the highest cut to the side"
+    );
+    // Ways at feed above the part are no cuts: after a rapid, or upwards at feed.
+    for leads in [
+        "Z2\nG1 X40 F100\nX0\n",
+        "G1 Z-1 F100\nX5\nZ2\nX0\n",
+        "G1 Z0 F100\nX40\n",
+    ] {
+        assert_eq!(top(leads), "z = 0", "{leads}");
+    }
+}
+
+#[test]
 fn gcode_with_comments_and_libraries() {
     let folder = tempfile::tempdir().unwrap();
     let program = file(&folder, "slot.nc", GCODE);

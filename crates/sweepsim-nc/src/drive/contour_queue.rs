@@ -28,6 +28,9 @@ impl Track {
 
     /// Switches cutter compensation on: from the next move on.
     pub fn compensate(&mut self, side: CompensationSettings, plane: ArcPlane) -> Result<(), NcProblem> {
+        if self.keeps_side(side.left) {
+            return Ok(());
+        }
         if self.compensates() {
             return Err(NcProblem::unsupported(
                 "a change of cutter compensation without its end is",
@@ -301,6 +304,9 @@ impl Track {
     fn emit(&mut self, stroke: &Stroke) -> Result<(), NcProblem> {
         if let Some(actual) = self.contour.actual.take() {
             self.xyz = actual.map(Some);
+        }
+        if self.keeps(stroke) {
+            return Ok(());
         }
         if let Some(trace) = &mut self.trace {
             trace.stroke(stroke);

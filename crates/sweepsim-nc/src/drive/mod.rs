@@ -8,6 +8,7 @@ mod cycles;
 mod driver;
 mod moves;
 mod rapids;
+mod recording;
 mod said;
 mod trace;
 mod track;
@@ -17,9 +18,14 @@ pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
-pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
-pub(crate) use cycles::{Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, WayOut};
+pub(crate) use contour::{
+    ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, NARROW, ProgramPlace, Stroke,
+};
+pub(crate) use cycles::{
+    ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,
+};
 pub(crate) use driver::{Coordinates, Sense};
+pub(crate) use said::{DiameterAsked, UNKNOWN_TOOL};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;
 pub(crate) use unknowns::{Placed, WorkOffset, WorkOffsets};

@@ -7,6 +7,7 @@ use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace};
 use super::driver::{Coordinates, Driver, Sense};
+use super::recording::Recording;
 use super::trace::Trace;
 use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
@@ -67,6 +68,7 @@ pub(crate) struct Track {
     /// The work offset of the moves, if only the machine knows where it is.
     pub(super) elsewhere: Option<Elsewhere>,
     pub(super) left_out: BTreeMap<String, LeftOut>,
+    pub(super) recording: Option<Recording>,
     /// The axes along which a move that only the machine knows has gone.
     pub(super) lost: [bool; 3],
 }
@@ -116,6 +118,7 @@ impl Track {
             assumptions: AssumptionList::default(),
             elsewhere: None,
             left_out: BTreeMap::new(),
+            recording: None,
             lost: [false; 3],
         }
     }

@@ -131,6 +131,8 @@ pub(crate) enum Code {
     Blending,
     /// Changes no geometry; its words are its own. What to note.
     Ignored(&'static str),
+    /// A cycle whose moves are not known, by its name.
+    UnknownCycle(&'static str),
     Harmless,
     /// Not supported; the reason as a subject with its verb.
     Refused(&'static str),
@@ -156,8 +158,13 @@ pub(crate) fn g_in(value: f64, block: &Block) -> Code {
             Some(0.0 | 1.0) if !given("LP") => HIGH_SPEED,
             _ => Code::Refused("high-speed modes other than Q0 and Q1 are"),
         },
-        // On lathes and on some mills (bolt circles) these are cycles, which have such words.
+        // On lathes and on some mills these are cycles, which have such words.
+        // Holes on a circle or in a row, where a cycle is on.
+        Code::InchOrCycle(inch) if block.has('L') && given("IJ") && !given("PQUW") => {
+            Code::UnknownCycle(if inch { "G70" } else { "G71" })
+        }
         Code::InchOrCycle(_) if given("IJKLPQRDUW") => Code::Refused("cycles are"),
+        Code::Stretch(47) if block.has('P') => Code::UnknownCycle("G47 (engraving)"),
         code => code,
     }
 }
@@ -183,7 +190,7 @@ fn g(value: f64) -> Code {
         120 | 130 => Code::CircularPocket {
             counter_clockwise: tenths == 130.0,
         },
-        1500 => Code::Refused("pockets by a subprogram (G150) are"),
+        1500 => Code::UnknownCycle("G150"),
         150 => Code::Polar(false),
         160 => Code::Polar(true),
         170 => Code::Plane([0, 1, 2]),
@@ -263,6 +270,10 @@ fn g(value: f64) -> Code {
         // Haas's G110 to G129 are G154 P1 to P20.
         tenths @ 1100..=1290 if tenths % 10 == 0 => Code::WorkOffset(EXTENDED + (tenths - 1100) / 10 + 1),
         1870 => Code::Ignored("smoothness (G187) changes no programmed point: ignored"),
+        220 | 230 => Code::Ignored("limits of the travel (G22, G23) change no programmed point: ignored"),
+        106 => Code::Ignored("the retraction of the tool (G10.6) changes no programmed point: ignored"),
+        // Ends of what is refused.
+        131 | 401 | 502 => Code::Harmless,
         1030 => Code::Ignored("look-ahead limits (G103) change no programmed point: ignored"),
         531 | 2530 => Code::AlignTool,
         2540 => Code::DynamicOffset(true),

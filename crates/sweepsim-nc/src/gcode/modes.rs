@@ -34,6 +34,8 @@ pub(crate) struct TipControl {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Modes {
     pub motion: Option<MotionMode>,
+    /// The last move's before a cycle: G80 goes back to it.
+    pub before_cycle: Option<MotionMode>,
     pub plane: ArcPlane,
     pub absolute: bool,
     pub absolute_centres: bool,

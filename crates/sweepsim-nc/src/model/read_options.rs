@@ -59,6 +59,8 @@ pub struct ReadOptions {
     pub in_program_units: bool,
     /// Whether what a program leaves to the control or to the operator is an error, instead of an [`Assumption`](crate::Assumption).
     pub strict: bool,
+    /// Whether registers of diameters that nothing sets hold the wear of their tools, 0, rather than their sizes.
+    pub wear_registers: bool,
     /// The control's numbered variables when the program starts, as in LinuxCNC's `.var` file: work offsets from `#5221`, homes from `#5161`.
     /// With them, positions in machine coordinates are known, and work offsets that the program does not set.
     pub variables: BTreeMap<u32, f64>,
@@ -94,6 +96,7 @@ impl Default for ReadOptions {
             offsets: BTreeMap::new(),
             in_program_units: false,
             strict: false,
+            wear_registers: false,
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             most_blocks: 20_000_000,

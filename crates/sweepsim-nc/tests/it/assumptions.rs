@@ -161,13 +161,48 @@ fn a_register_is_the_size_of_the_tool() {
         options.diameters.insert(3, 8.0);
     });
     assert!(said.assumptions.is_empty() && tips(&said).iter().any(|tip| (tip[0] + 4.0).abs() < 1e-9));
-    // Of a tool whose size nobody says, it is still asked for.
-    assert!(gcode::read(&format!("T3 M6\n{AROUND}"), &ReadOptions::default()).is_err());
+    // Of a tool whose size nobody says, it is 0: the tool's axis goes along the square.
+    let unknown = read(&format!("T3 M6\n{AROUND}"));
+    assert!(tips(&unknown).contains(&[0.0, 20.0, 0.0]) && only(&unknown).changes_verdict);
+    assert!(
+        only(&unknown)
+            .taken
+            .starts_with("0, since the size of tool 3 is not known")
+    );
+    assert!(strict(&format!("T3 M6\n{AROUND}")).contains("the diameter D3"));
+    // As wear, it is 0 whatever the tool is.
+    let wear = read_with(&text, |options| options.wear_registers = true);
+    assert!(tips(&wear).contains(&[0.0, 20.0, 0.0]) && only(&wear).taken.starts_with("0, the tool's wear"));
     // A job or a library may know the tool.
     let known = read_with(&format!("T3 M6\n{AROUND}"), |options| {
         options.cutters.insert(3, 10.0);
     });
     assert!(only(&known).taken.contains("10 across"));
+}
+
+#[test]
+fn both_readings_of_a_register_are_compared() {
+    // Down a neck, around the belly of a bottle and up again: 6 mm does not fit between both sides of a neck of 4 mm.
+    let inside = |neck: f64| {
+        let text = format!(
+            "(T3 D=6. CR=0. - flat end mill)\nT3 M6\nG0 X0 Y60 Z0\nG41 D3 G1 X-{neck} Y40 F100\nY20\nX-20\nY0\nX20\nY20\nX{neck}\nY40\n\
+             G40 X0 Y60\nM30\n"
+        );
+        let program = read(&text);
+        assert!(only(&program).taken.starts_with("the size of tool 3"));
+        let notes = program.notes.iter().map(ToString::to_string);
+        notes
+            .filter(|note| note.contains("say by --diameters"))
+            .collect::<Vec<_>>()
+    };
+    let [warning] = &inside(2.0)[..] else {
+        panic!("{:?}", inside(2.0))
+    };
+    assert!(
+        warning.contains("a register (D3) has a place") && warning.starts_with("line "),
+        "{warning}"
+    );
+    assert!(inside(5.0).is_empty());
 }
 
 #[test]
@@ -228,8 +263,10 @@ fn probing_is_skipped() {
     assert!(program.assumptions.iter().all(|one| !one.changes_verdict));
     assert!(strict(text).contains("the subprogram O9810 is missing"));
     assert!(strict("G0 X0 Y0 Z5\nG31 Z-3 F100\n").contains("probing is"));
-    // A program of the user is not the machine's.
-    assert!(gcode::read("G0 X0 Y0 Z5\nG65 P1234\n", &ReadOptions::default()).is_err());
+    // A program of the user is not the machine's: what it cuts is missing.
+    let missing = read("G0 X0 Y0 Z5\nG65 P1234\nG0 X1 Y1 Z5\n");
+    assert!(only(&missing).what.contains("O1234") && only(&missing).changes_verdict);
+    assert!(strict("G0 X0 Y0 Z5\nG65 P1234\n").contains("the subprogram O1234 is missing"));
 }
 
 #[test]

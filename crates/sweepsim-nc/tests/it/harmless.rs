@@ -105,8 +105,8 @@ fn units_by_g70() {
         tips(&program("G700 G0 X1 Y0 Z0\nG710 X1")),
         [[25.4, 0.0, 0.0], [1.0, 0.0, 0.0]]
     );
-    // A bolt circle of Haas, and roughing on a lathe.
-    refused("G70 I5 J0 L6", &format!("1: G70: cycles are not supported yet: {PATH}"));
+    // A bolt circle of Haas is left out; roughing on a lathe is refused.
+    assert!(program("G0 X0 Y0 Z5\nG70 I5 J0 L6\nX10\n").assumptions[0].changes_verdict);
     refused("G71 P10 Q20", &format!("1: G71: cycles are not supported yet: {PATH}"));
 }
 
@@ -295,9 +295,7 @@ fn all_problems_at_once() {
         problems("G0 X0 Y0 Z5\nG81 X1 Z-1 R1 F100\nX2\nG80\nG1 X#1\nG41 D1 X5\nG81 X3\nM98 P5\nG2 X5 I1\nM30\nG42"),
         [
             "5:5: #1 has no value here: LinuxCNC takes 0, Fanuc leaves out its word; expected `#1 = …` before, or the name of the control",
-            "6:1: the diameter D1 for cutter compensation is not known: expected --diameters D1=… (in a job: `diameters`), a tool table, or G41.1 D with the diameter",
-            "7:1: G81 without R: expected R, the plane to drill from, and Z, the bottom",
-            "8:1: the subprogram O5 is missing: expected it in this program, or in a file of its name beside it"
+            "7:1: G81 without R: expected R, the plane to drill from, and Z, the bottom"
         ],
         "each once, and none that follows from another"
     );

@@ -111,7 +111,9 @@ fn bore_milling_is_a_helix() {
 #[test]
 fn bad_cycles() {
     let error = |text: &str| {
-        heidenhain::read(&format!("{START}{text}"), &ReadOptions::default())
+        let mut options = ReadOptions::default();
+        options.strict = true;
+        heidenhain::read(&format!("{START}{text}"), &options)
             .unwrap_err()
             .to_string()
     };

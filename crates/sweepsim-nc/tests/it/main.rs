@@ -1,10 +1,12 @@
 //! Integration tests of `sweepsim-nc`, in one binary: it links once.
 
 mod accelerations;
+mod approaches;
 mod apt;
 mod assumptions;
 mod cam_klartext;
 mod contents;
+mod contour_cycles;
 mod contours;
 mod fuzz;
 mod gcode;
@@ -23,9 +25,11 @@ mod pockets;
 mod posted;
 mod programs;
 mod round_trips;
+mod shop_programs;
 mod siemens;
 mod tables;
 mod tilted_turns;
 mod tools;
 mod turning_arcs;
+mod words_of_shops;
 mod written;

@@ -92,7 +92,8 @@ fn what_is_not_read_says_so() {
         gcode::read(text, &options).unwrap_err().to_string()
     };
     assert!(error("G0 X0 Y0 Z0\nG11 X1 Y1 P90\n").contains("2:1: G11: turned coordinates are"));
-    assert!(error("G0 X0 Y0 Z0\nCALL O1234\n").contains("the subprogram O1234 is missing"));
+    let missing = read(&format!("{HEAD}CALL O1234\nG00 X1. Y1. Z5.\n"));
+    assert!(missing.assumptions[0].what.contains("O1234") && missing.assumptions[0].changes_verdict);
     let called = read(&format!("{HEAD}G01 Z0 F100\nCALL OO30 PX=1\nG00 X1. Y1. Z5.\n"));
     assert!(called.assumptions[0].what.contains("OO30") && called.assumptions[0].changes_verdict);
     // It is not written.

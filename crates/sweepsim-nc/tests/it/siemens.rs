@@ -192,7 +192,7 @@ fn subprograms() {
         2
     );
     assert_eq!(program.files.last().unwrap(), &PathBuf::from("POCKET1.SPF"));
-    assert!(error("G0 X0 Y0 Z1\nPOCKET1").contains("2:1: POCKET1 is not supported yet"));
+    assert!(error("G0 X0 Y0 Z1\nPOCKET1").contains("2:1: the call of POCKET1 is not supported yet: it is missing"));
     assert!(error("%_N_A_MPF\nG0 X0 Y0 Z0\nB\n%_N_B_SPF\nB\nM17").contains("called within itself"));
 }
 

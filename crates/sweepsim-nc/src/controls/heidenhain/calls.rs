@@ -62,16 +62,19 @@ impl Reader<'_> {
     }
 
     pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
-        let name = line.word(2).trim_matches('"').trim_end_matches(".H").to_owned();
+        self.call_path(line.word(2), line)
+    }
+
+    pub(super) fn call_path(&mut self, path: &str, line: &Line) -> Result<(), Located> {
+        let path = path.trim_matches('"').trim_end_matches(".H");
+        // Folders are the control's own.
+        let name = path.rsplit(['\\', '/', ':']).next().unwrap_or(path).to_owned();
         let routine = match self.names.get(&name) {
             Some(&routine) => routine,
             None => {
                 let Some((file, text)) = (self.library)(&name) else {
-                    let problem = NcProblem::unsupported(
-                        format!("CALL PGM {name} is"),
-                        format!("there is no {name}.H beside this file"),
-                    );
-                    return Err((problem, line.all()));
+                    let left = self.track.leave_out_program(&name, &format!("{name}.H"));
+                    return left.map_err(|problem| (problem, line.all()));
                 };
                 let routine = Routine::new(self.track.add_file(file), Rc::new(text));
                 self.routines.push(routine);

@@ -1,17 +1,107 @@
-//! Drilling cycles.
+//! Cycles: which there are, and where they are called.
 
+use super::contour_cycles::ContourData;
 use super::interpreter::Reader;
 use super::line::Line;
 use super::planes::is_frame_cycle;
-use crate::drive::{Cycle, HoleCycle, HoleWork, Pecks, Pocket, WayOut};
+use super::values::Parameters;
+use crate::drive::Cycle;
 use crate::model::event::EventKind;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
-/// By how much cycle 202 leaves the wall, in mm.
-const FROM_THE_WALL: f64 = 0.2;
+/// The most places of a pattern.
+const MOST_PLACES: u32 = 10_000;
+
+/// The cycle that `CYCL CALL` and `M99` call, and what cycles on contours share.
+#[derive(Default)]
+pub(super) struct Cycles {
+    pub(super) cycle: Option<Cycle>,
+    /// Its number and its block, which patterns take with other levels.
+    block: Option<(u32, Line)>,
+    pub(super) contours: ContourData,
+}
+
+/// The block that defines a cycle.
+pub(super) struct Defined<'a> {
+    pub number: u32,
+    line: &'a Line,
+    parameters: &'a Parameters,
+    unit: f64,
+}
+
+impl Defined<'_> {
+    /// A parameter, if it is there and a number.
+    pub fn find(&self, parameter: u32) -> Result<Option<f64>, Located> {
+        let name = format!("Q{parameter}=");
+        for (index, token) in self.line.tokens.iter().enumerate() {
+            if let Some(rest) = token.text.strip_prefix(&name) {
+                let text = if rest.is_empty() {
+                    self.line.word(index + 1)
+                } else {
+                    rest
+                };
+                return match self.parameters.value(text) {
+                    Ok(value) => Ok(Some(value)),
+                    // FMAX, FAUTO.
+                    Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
+                    Err(problem) => Err((problem, token.span.clone())),
+                };
+            }
+        }
+        Ok(None)
+    }
+
+    /// A number, or 0.
+    pub fn number(&self, parameter: u32) -> Result<f64, Located> {
+        Ok(self.find(parameter)?.unwrap_or(0.0))
+    }
+
+    /// A length in mm, if it is there.
+    pub fn length(&self, parameter: u32) -> Result<Option<f64>, Located> {
+        Ok(self.find(parameter)?.map(|value| value * self.unit))
+    }
+
+    /// A length in mm, or 0.
+    pub fn span(&self, parameter: u32) -> Result<f64, Located> {
+        Ok(self.length(parameter)?.unwrap_or(0.0))
+    }
+
+    pub fn need(&self, parameter: u32) -> Result<f64, Located> {
+        let number = self.number;
+        let problem = || {
+            NcProblem::syntax(format!(
+                "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
+            ))
+        };
+        self.length(parameter)?.ok_or_else(|| self.fail(problem()))
+    }
+
+    /// A depth in mm, below 0.
+    pub fn depth(&self, parameter: u32) -> Result<f64, Located> {
+        let depth = self.need(parameter)?;
+        if depth >= 0.0 {
+            let what = format!("the depth Q{parameter} of cycle {}", self.number);
+            return Err(self.fail(NcProblem::value(what, depth, "negative")));
+        }
+        Ok(depth)
+    }
+
+    pub fn fail(&self, problem: NcProblem) -> Located {
+        (problem, self.line.all())
+    }
+}
 
 impl Reader<'_> {
+    pub(super) fn defined<'a>(&'a self, number: u32, line: &'a Line) -> Defined<'a> {
+        Defined {
+            number,
+            line,
+            parameters: &self.parameters,
+            unit: self.unit(),
+        }
+    }
+
     /// `CYCL DEF` and `CYCL CALL`.
     pub(super) fn cycle_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
@@ -21,7 +111,7 @@ impl Reader<'_> {
                 return Err(whole(NcProblem::unsupported(found, "expected L with M99 at each hole")));
             }
             self.codes(line)?;
-            return self.drill().map_err(whole);
+            return self.call_cycle().map_err(whole);
         }
         let name = line.word(2);
         let (number, part) = name.split_once('.').unwrap_or((name, ""));
@@ -34,290 +124,128 @@ impl Reader<'_> {
             return self.frame_cycle(number, part, line);
         }
         match number {
-            // Dwell.
-            9 => {
-                let text = line.tokens.iter().skip(3).find_map(|token| {
-                    ["V.ZEIT", "DWELL", "V.TIME"]
-                        .iter()
-                        .find_map(|name| token.text.strip_prefix(name).map(str::to_owned))
-                });
-                let last = line.tokens.last().map(|token| token.text.clone());
-                if part == "1"
-                    && let Some(text) = text.filter(|text| !text.is_empty()).or(last)
-                    && let Ok(seconds) = self.parameters.value(&text)
-                {
-                    self.event(EventKind::Dwell { seconds }, line)?;
-                }
-                Ok(())
-            }
-            // Tolerance, spindle orientation, patterns' reference: they move nothing.
-            13 | 32 => Ok(()),
-            200..=209 | 240 | 241 | 262 => {
-                self.cycle = Some(Cycle::Hole(self.define(number, line)?));
-                Ok(())
-            }
-            251..=253 | 256 | 257 => {
-                let pocket = self.pocket(number, line)?;
-                self.cycle = Some(Cycle::Pocket(format!("cycle {number}"), Box::new(pocket)));
-                Ok(())
-            }
+            9 => self.dwell_cycle(part, line)?,
+            // Tolerance, spindle orientation: they move nothing.
+            13 | 32 => {}
+            14 => self.cycles.contours.name_labels(part, line),
+            20 => self.contour_data(20, line)?,
+            220 | 221 => self.pattern(number, line)?,
             // Those of the machine's builder, and of its probe.
             300..=499 => {
                 let what = format!("cycle {number}, of the machine's builder or its probe");
                 let assumption = Assumption::new(what, "it cuts nothing: left out", "the moves written out");
                 self.track.assume(assumption.harmless());
-                Ok(())
             }
             _ => {
-                let problem = NcProblem::unsupported(
-                    format!("cycle {number} is"),
-                    "expected 7, 8, 9, 10, 11, 200 to 209, 240, 241, 247, 251 to 253, 256, 257 or 262, or the moves that it makes",
-                );
-                Err(whole(problem))
+                self.cycles.cycle = Some(self.define(number, line)?);
+                self.cycles.block = Some((number, line.clone()));
             }
         }
+        Ok(())
     }
 
-    /// A parameter of a cycle, if it is there and a number.
-    fn parameter(&self, line: &Line, parameter: u32) -> Result<Option<f64>, Located> {
-        let name = format!("Q{parameter}=");
-        for (index, token) in line.tokens.iter().enumerate() {
-            if let Some(rest) = token.text.strip_prefix(&name) {
-                let text = if rest.is_empty() { line.word(index + 1) } else { rest };
-                return match self.parameters.value(text) {
-                    Ok(value) => Ok(Some(value)),
-                    // FMAX, FAUTO.
-                    Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
-                    Err(problem) => Err((problem, token.span.clone())),
-                };
-            }
-        }
-        Ok(None)
-    }
-
-    /// Pockets (251, 252), slots (253) and studs (256, 257).
-    ///
-    /// Source: *TNC 620, Cycle Programming* (340 56x-02), 5.2 to 5.7.
-    fn pocket(&mut self, number: u32, line: &Line) -> Result<Pocket, Located> {
-        let fail = |problem| (problem, line.all());
-        let tool = self.cutter_radius().ok_or_else(|| {
-            fail(NcProblem::syntax(format!(
-                "the radius of the tool of cycle {number} is not known: expected --diameters (in a job: `diameters`), or TOOL DEF … R"
-            )))
-        })?;
-        let find = |parameter: u32| self.parameter(line, parameter);
-        let unit = self.unit();
-        let length = |parameter: u32| Ok::<Option<f64>, Located>(find(parameter)?.map(|value| value * unit));
-        let need = |parameter: u32| {
-            let problem = || {
-                NcProblem::syntax(format!(
-                    "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
-                ))
-            };
-            length(parameter)?.ok_or_else(|| fail(problem()))
-        };
-        let (half, corner, raw) = match number {
-            251 => ([0.5 * need(218)?, 0.5 * need(219)?], length(220)?.unwrap_or(0.0), None),
-            252 => ([0.5 * need(223)?; 2], 0.5 * need(223)?, None),
-            253 => ([0.5 * need(218)?, 0.5 * need(219)?], 0.5 * need(219)?, None),
-            256 => {
-                let raw = [0.5 * need(424)?, 0.5 * need(425)?];
-                (
-                    [0.5 * need(218)?, 0.5 * need(219)?],
-                    length(220)?.unwrap_or(0.0),
-                    Some(raw),
-                )
-            }
-            _ => ([0.5 * need(223)?; 2], 0.5 * need(223)?, Some([0.5 * need(222)?; 2])),
-        };
-        let [x, y] = half;
-        let aside = match (number, find(367)?.unwrap_or(0.0)) {
-            (253, 1.0) => [x, 0.0],
-            (253, 2.0) => [x - corner, 0.0],
-            (253, 3.0) => [corner - x, 0.0],
-            (253, 4.0) => [-x, 0.0],
-            (251 | 256, 1.0) => [x, y],
-            (251 | 256, 2.0) => [-x, y],
-            (251 | 256, 3.0) => [-x, -y],
-            (251 | 256, 4.0) => [x, -y],
-            _ => [0.0; 2],
-        };
-        let surface = length(203)?.unwrap_or(0.0);
-        let start = surface + need(200)?.abs();
-        let depth = need(201)?;
-        if depth >= 0.0 {
-            return Err(fail(NcProblem::value(
-                format!("the depth Q201 of cycle {number}"),
-                depth,
-                "negative",
-            )));
-        }
-        // Roughing alone leaves what is left for finishing.
-        let kind = find(215)?.unwrap_or(0.0);
-        let left = if kind == 1.0 {
-            [length(368)?.unwrap_or(0.0), length(369)?.unwrap_or(0.0)]
-        } else {
-            [0.0; 2]
-        };
-        let infeed = if kind == 2.0 { length(338)? } else { length(202)? };
-        let climbs = find(351)? != Some(-1.0);
-        Ok(Pocket {
-            half,
-            corner,
-            raw,
-            aside,
-            turn: find(if number == 253 { 374 } else { 224 })?.unwrap_or(0.0),
-            start,
-            surface,
-            bottom: surface + depth,
-            end: start.max(surface + length(204)?.unwrap_or(0.0)),
-            infeed: infeed.unwrap_or(0.0),
-            left,
-            rim_alone: kind == 2.0,
-            tool,
-            step: tool * find(370)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0),
-            feed: find(207)?,
-            plunge: find(206)?,
-            clockwise: climbs == raw.is_some(),
+    /// A cycle that is called later.
+    fn define(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
+        Ok(match number {
+            200..=209 | 240 | 241 | 262..=265 | 267 => Cycle::Holes(self.holes(number, line)?),
+            230 | 232 | 233 | 251..=254 | 256 | 257 => self.shape(number, line)?,
+            22..=25 => self.contour_cycle(number, line)?,
+            _ => Cycle::Unknown(format!("cycle {number}")),
         })
     }
 
-    fn define(&mut self, number: u32, line: &Line) -> Result<HoleCycle, Located> {
-        let tool = if matches!(number, 208 | 262) {
-            self.cutter_radius()
-        } else {
-            None
-        };
-        let find = |parameter: u32| self.parameter(line, parameter);
-        let unit = self.unit();
-        let length = |parameter: u32| Ok::<Option<f64>, Located>(find(parameter)?.map(|value| value * unit));
-        let need = |parameter: u32| {
-            length(parameter)?.ok_or_else(|| {
-                let problem = NcProblem::syntax(format!(
-                    "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
-                ));
-                (problem, line.all())
-            })
-        };
-        let clearance = need(200)?.abs();
-        let fail = |problem| (problem, line.all());
-        let aside = match find(214)?.unwrap_or(0.0) {
-            0.0 => None,
-            1.0 => Some([-1.0, 0.0]),
-            2.0 => Some([0.0, -1.0]),
-            3.0 => Some([1.0, 0.0]),
-            4.0 => Some([0.0, 1.0]),
-            other => {
-                return Err(fail(NcProblem::value(
-                    format!("Q214 of cycle {number}"),
-                    other,
-                    "0, 1, 2, 3 or 4",
-                )));
-            }
-        };
-        let surface = length(203)?.unwrap_or(0.0);
-        let start = surface + clearance;
-        let dwell = match number {
-            204 => find(255)?,
-            208 => None,
-            _ => find(211)?,
-        };
-        // The bottom is given below.
-        let mut hole = HoleCycle::new(start, start, dwell, false);
-        hole.end = start.max(surface + length(204)?.unwrap_or(0.0));
-        if number == 204 {
-            let Some(aside) = aside else {
-                let problem =
-                    NcProblem::syntax("cycle 204 without a direction beside the middle: expected Q214=1, 2, 3 or 4");
-                return Err(fail(problem));
-            };
-            let (depth, thickness, off, edge) = (need(249)?, need(250)?, need(251)?, need(252)?);
-            if !(depth > 0.0 && thickness > 0.0) {
-                return Err(fail(NcProblem::value(
-                    "Q249 and Q250 of cycle 204",
-                    format!("{depth} and {thickness}"),
-                    "positive",
-                )));
-            }
-            hole.bottom = surface + (-thickness - clearance - edge);
-            hole.feed = find(253)?;
-            hole.aside = aside.map(|c| c * off);
-            hole.work = HoleWork::Back {
-                up: surface + (-thickness + depth - edge),
-                feed: find(254)?,
-                rapid: false,
-            };
-            return Ok(hole);
+    /// Cycle 9.
+    fn dwell_cycle(&mut self, part: &str, line: &Line) -> Result<(), Located> {
+        let text = line.tokens.iter().skip(3).find_map(|token| {
+            ["V.ZEIT", "DWELL", "V.TIME"]
+                .iter()
+                .find_map(|name| token.text.strip_prefix(name).map(str::to_owned))
+        });
+        let last = line.tokens.last().map(|token| token.text.clone());
+        if part == "1"
+            && let Some(text) = text.filter(|text| !text.is_empty()).or(last)
+            && let Ok(seconds) = self.parameters.value(&text)
+        {
+            self.event(EventKind::Dwell { seconds }, line)?;
         }
-        let depth = match number {
-            // As deep as the cone of a point of 90 degrees is wide.
-            240 if find(343)? == Some(1.0) => -0.5 * need(344)?.abs(),
-            _ => need(201)?,
-        };
-        if depth >= 0.0 {
-            return Err((
-                NcProblem::value(format!("the depth Q201 of cycle {number}"), depth, "negative"),
-                line.all(),
-            ));
-        }
-        hole.bottom = surface + depth;
-        hole.feed = find(206)?;
-        hole.out = WayOut::RapidToStart;
-        match number {
-            200 | 203 | 205 => {
-                if let Some(infeed) = length(202)?.filter(|infeed| *infeed > 0.0) {
-                    hole.work = HoleWork::Pecks(Pecks {
-                        first: surface - infeed,
-                        infeed,
-                        decrease: length(212)?.unwrap_or(0.0).max(0.0),
-                        least: 1e-3,
-                        clears: true,
-                        above: clearance.min(1.0),
-                        ..Pecks::default()
-                    });
-                }
-            }
-            208 | 262 => {
-                let (diameter, pitch) = (need(335)?, need(if number == 208 { 334 } else { 239 })?.abs());
-                let Some(tool) = tool else {
-                    let problem = NcProblem::syntax(format!(
-                        "the radius of the tool of cycle {number} is not known: expected it in the tool table, or TOOL DEF … R"
-                    ));
-                    return Err(fail(problem));
-                };
-                let radius = 0.5 * diameter - tool;
-                if !(radius > 0.0 && pitch > 0.0) {
-                    let problem = NcProblem::value(
-                        format!("the hole of cycle {number}"),
-                        format!("{diameter} mm wide, with an infeed of {pitch} mm"),
-                        format!("wider than the tool, {} mm, with a positive infeed", 2.0 * tool),
-                    );
-                    return Err(fail(problem));
-                }
-                let sense = if find(351)? == Some(-1.0) { -1.0 } else { 1.0 };
-                let turns = sense * ((start - hole.bottom) / pitch);
-                hole.work = HoleWork::Helix { radius, turns };
-            }
-            // Boring, reaming and tapping.
-            _ => {
-                let out = find(208)?.filter(|feed| *feed > 0.0);
-                hole.out = WayOut::FeedToStart(out);
-                if number == 202 {
-                    hole.aside = aside.unwrap_or_default().map(|c| c * FROM_THE_WALL);
-                }
-            }
-        }
-        Ok(hole)
+        Ok(())
     }
 
     /// Calls the cycle at the current place.
-    pub(super) fn drill(&mut self) -> Result<(), NcProblem> {
-        match &self.cycle {
+    pub(super) fn call_cycle(&mut self) -> Result<(), NcProblem> {
+        match &self.cycles.cycle {
             Some(cycle) => self.track.cycle_here(cycle, self.modes.plane, self.uncertain),
             None if self.uncertain => Ok(()),
             None => Err(NcProblem::syntax(
                 "a cycle is called, but none is defined: expected CYCL DEF before it",
             )),
         }
+    }
+
+    /// Cycles 220 and 221: the cycle before at places on a circle or in rows, with the levels that they say.
+    fn pattern(&mut self, number: u32, line: &Line) -> Result<(), Located> {
+        let defined = self.defined(number, line);
+        let count = |parameter: u32| {
+            let count = defined.find(parameter)?.unwrap_or(1.0);
+            let expected = "a whole number from 1 on";
+            NcProblem::whole(format!("Q{parameter}"), count, 1..=MOST_PLACES, expected)
+                .map_err(|problem| defined.fail(problem))
+        };
+        let turned = |[x, y]: [f64; 2], angle: f64, [a, b]: [f64; 2]| {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            [x + a * cos - b * sin, y + a * sin + b * cos]
+        };
+        let places: Vec<[f64; 2]> = if number == 220 {
+            let (count, middle) = (count(241)?, [defined.span(216)?, defined.span(217)?]);
+            let (radius, first) = (0.5 * defined.need(244)?, defined.number(245)?);
+            let stop = defined.find(246)?.unwrap_or(first + 360.0);
+            let full = ((stop - first).abs() - 360.0).abs() < 1e-9 || stop == first;
+            let gaps = if full { count } else { (count - 1).max(1) };
+            let spread = if stop == first { 360.0 } else { stop - first };
+            let step = defined.find(247)?.filter(|step| *step != 0.0);
+            let step = step.unwrap_or(spread / f64::from(gaps));
+            (0..count)
+                .map(|k| turned(middle, first + f64::from(k) * step, [radius, 0.0]))
+                .collect()
+        } else {
+            let (columns, rows) = (count(242)?, count(243)?);
+            if columns.saturating_mul(rows) > MOST_PLACES {
+                let problem = NcProblem::value("the number of places of cycle 221", columns * rows, "at most 10000");
+                return Err(defined.fail(problem));
+            }
+            let (start, angle) = ([defined.span(225)?, defined.span(226)?], defined.number(224)?);
+            let apart = [defined.span(237)?, defined.span(238)?];
+            (0..columns * rows)
+                .map(|k| {
+                    let (row, column) = (k / columns, k % columns);
+                    let column = if row % 2 == 0 { column } else { columns - 1 - column };
+                    turned(start, angle, [f64::from(column) * apart[0], f64::from(row) * apart[1]])
+                })
+                .collect()
+        };
+        let cycle = match self.cycles.block.clone() {
+            Some((number, mut block)) => {
+                // The first of two is the one that counts.
+                block.tokens.splice(3..3, line.tokens.iter().skip(3).cloned());
+                self.define(number, &block)?
+            }
+            None => return Err((NcProblem::syntax("a pattern without a cycle before it"), line.all())),
+        };
+        let whole = |problem| (problem, line.all());
+        let [u, v, _] = self.modes.plane;
+        for [a, b] in places {
+            self.track.use_offset(&mut self.frames.work).map_err(whole)?;
+            match self.track.known() {
+                Some(mut at) => {
+                    (at[u], at[v]) = (a, b);
+                    self.track.line(at, self.track.abc, true).map_err(whole)?;
+                }
+                None => (self.track.xyz[u], self.track.xyz[v]) = (Some(a), Some(b)),
+            }
+            self.track
+                .cycle_here(&cycle, self.modes.plane, self.uncertain)
+                .map_err(whole)?;
+        }
+        Ok(())
     }
 }

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use super::cycles::Cycles;
 use super::frames::Frames;
 use super::line::{self, Line};
 use super::routine::Routine;
-use super::values::Parameters;
+use super::values::{Jump, Parameters};
 use crate::controls::run::{self, BlockIndex, Library, Running};
-use crate::drive::{Cycle, ProgramPlace, Sense, Track};
+use crate::drive::{ProgramPlace, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
@@ -63,8 +64,10 @@ pub(super) struct Reader<'a> {
     pub modes: Modes,
     /// The last move's end is made by the RND or CHF that follows.
     pub rounded: bool,
-    pub cycle: Option<Cycle>,
+    pub cycles: Cycles,
     pub uncertain: bool,
+    /// The program of SEL PGM.
+    pub(super) selected: Option<String>,
     pub(super) library: Library<'a>,
     pub(super) options: &'a ReadOptions,
     pub(super) routines: Vec<Routine>,
@@ -79,7 +82,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     options.check()?;
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
-        parameters: Parameters::default(),
+        parameters: Parameters::new(options.strict),
         frames: Frames::new(options),
         modes: Modes {
             inch: options.inch,
@@ -88,8 +91,9 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
             ..Modes::default()
         },
         rounded: false,
-        cycle: None,
+        cycles: Cycles::default(),
         uncertain: false,
+        selected: None,
         library,
         options,
         routines: vec![Routine::new(0, Rc::clone(text))],
@@ -164,7 +168,13 @@ impl Running for Reader<'_> {
 
     fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
         let line = self.routines[routine].block(index);
-        self.block(&line, routine, index)
+        let result = self.block(&line, routine, index);
+        for name in self.parameters.asked() {
+            let settle = format!("{name} = … in the program");
+            let assumption = Assumption::new(format!("the value of {name}"), "0: nothing sets it", settle);
+            self.track.assume(assumption);
+        }
+        result
     }
 
     fn doubt(&mut self) {
@@ -184,7 +194,11 @@ impl Running for Reader<'_> {
 
 impl Reader<'_> {
     fn finish(mut self) -> Program {
-        if let [[Some(x0), Some(y0), Some(z0)], [Some(x1), Some(y1), Some(z1)]] = self.stock {
+        if let [[Some(x0), Some(y0), Some(z0)], [Some(x1), Some(y1), Some(z1)]] = self.stock
+            && x0 != x1
+            && y0 != y1
+            && z0 != z1
+        {
             self.track.program.stock = Some(StockDescription::Block {
                 min: [x0.min(x1), y0.min(y1), z0.min(z1)],
                 max: [x0.max(x1), y0.max(y1), z0.max(z1)],
@@ -248,7 +262,6 @@ impl Reader<'_> {
             }
             self.track.note("optional blocks (`/`) are executed");
         }
-        let whole = |problem| (problem, line.all());
         match line.word(0) {
             "BEGIN" if line.word(1) == "PGM" => {
                 if self.stack.len() == 1 {
@@ -278,28 +291,16 @@ impl Reader<'_> {
             "LBL" => {}
             "CALL" if line.word(1) == "LBL" => self.call_label(line, routine, index)?,
             "CALL" if line.word(1) == "PGM" => self.call_program(line)?,
-            "FN" => {
-                if let Some(label) = self.parameters.function(line)? {
-                    self.jump(&label, routine).map_err(whole)?;
-                }
-            }
+            "FN" => self.function(line, routine)?,
             word if word.starts_with("FN") => {
                 // FN0: is FN 0:.
                 let mut apart = line.clone();
-                let rest = word[2..].to_owned();
+                let (text, span) = (word[2..].to_owned(), line.span(0));
                 apart.tokens[0].text = "FN".into();
-                apart.tokens.insert(
-                    1,
-                    line::Token {
-                        text: rest,
-                        span: line.span(0),
-                    },
-                );
-                if let Some(label) = self.parameters.function(&apart)? {
-                    self.jump(&label, routine).map_err(whole)?;
-                }
+                apart.tokens.insert(1, line::Token { text, span });
+                self.function(&apart, routine)?;
             }
-            word if word.starts_with('Q') => self.parameters.formula(line)?,
+            word if word.starts_with('Q') && !word.starts_with("QS") => self.parameters.formula(line)?,
             "CYCL" => self.cycle_block(line)?,
             "PLANE" => self.plane_block(line)?,
             "FUNCTION" => self.function_block(line)?,
@@ -310,6 +311,16 @@ impl Reader<'_> {
             word if word.starts_with('M') && word[1..].bytes().all(|b| b.is_ascii_digit()) => {
                 self.codes(line)?;
             }
+            "APPR" | "DEP" => self.approach_block(line)?,
+            "TRANS" if line.word(1) == "DATUM" => self.datum_block(line)?,
+            "SEL" if line.word(1) == "PGM" => self.selected = Some(line.word(2).to_owned()),
+            "CALL" if line.word(1) == "SELECTED" => {
+                let path = self.selected.clone().unwrap_or_default();
+                self.call_path(&path, line)?;
+            }
+            // Tables, texts, what the control watches, and how it shows it.
+            "SEL" | "DECLARE" | "SECTION" | "MONITORING" | "POLARKIN" | "QS" => self.ignore(line),
+            word if word.starts_with("QS") => self.ignore(line),
             "TCH" => {
                 let taken = "its cycle cuts nothing: left out";
                 let assumption = Assumption::new("what a probe finds", taken, "a program without probing");
@@ -323,6 +334,42 @@ impl Reader<'_> {
                     "expected L, C, CC, CR, CT, CP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
                 );
                 return Err((problem, line.span(0)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A block that moves nothing.
+    fn ignore(&mut self, line: &Line) {
+        self.track
+            .note(format!("{} {} moves nothing: ignored", line.word(0), line.word(1)));
+    }
+
+    fn function(&mut self, line: &Line, routine: usize) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        match self.parameters.function(line)? {
+            Jump::None => {}
+            Jump::To(label) => self.jump(&label, routine).map_err(whole)?,
+            Jump::Ignored(number) => self.track.note(format!("FN {number} moves nothing: ignored")),
+            Jump::Read(name, of) => {
+                // ID270: where the tool is, in the coordinates of the program.
+                let axis = of.strip_prefix("ID270 NR1 IDX").and_then(|k| k.parse::<usize>().ok());
+                let known = axis.and_then(|k| *self.track.xyz.get(k.checked_sub(1)?)?);
+                if known.is_none() && self.options.strict {
+                    let found = format!("reading {of} is");
+                    return Err(whole(NcProblem::unsupported(
+                        found,
+                        "only the control knows it; expected a number",
+                    )));
+                }
+                if known.is_none() {
+                    let settle = format!("{name} = … in the program");
+                    let what = format!("what the control knows of {of}");
+                    self.track
+                        .assume(Assumption::new(what, format!("0, as {name}"), settle));
+                }
+                let value = known.map_or(0.0, |mm| mm / self.unit());
+                self.parameters.set(&name, value).map_err(whole)?;
             }
         }
         Ok(())

@@ -48,7 +48,8 @@ pub(super) fn line(text: &str) -> Line {
             }
         }
         let text = code[start..at].trim_matches('\u{feff}').to_ascii_uppercase();
-        if text == "/" {
+        let first = line.tokens.iter().all(|token| is_number(&token.text));
+        if text == "/" && first {
             line.skipped = true;
         } else if let Some(rest) = text.strip_prefix('/').filter(|_| line.tokens.is_empty()) {
             line.skipped = true;
@@ -58,14 +59,42 @@ pub(super) fn line(text: &str) -> Line {
         }
     }
     // The number of the block.
-    if line
-        .tokens
-        .first()
-        .is_some_and(|token| token.text.bytes().all(|b| b.is_ascii_digit()))
-    {
+    if line.tokens.first().is_some_and(|token| is_number(&token.text)) {
         line.tokens.remove(0);
     }
+    match line.word(0) {
+        "FN" | "Q" => {}
+        word if word.starts_with("FN") || word.starts_with('Q') => {}
+        // LBL2 is LBL 2.
+        word if word.strip_prefix("LBL").is_some_and(|label| !label.is_empty()) => {
+            let label = word[3..].to_owned();
+            line.tokens[0].text = "LBL".into();
+            let span = line.span(0);
+            line.tokens.insert(1, Token { text: label, span });
+        }
+        _ => join_signs(&mut line.tokens),
+    }
     line
+}
+
+fn is_number(text: &str) -> bool {
+    text.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// `X + 10` is X+10.
+fn join_signs(tokens: &mut Vec<Token>) {
+    let mut at = 1;
+    while at + 1 < tokens.len() {
+        let is_axis = |text: &str| text.len() <= 3 && text.bytes().all(|b| b.is_ascii_alphabetic());
+        if matches!(tokens[at].text.as_str(), "+" | "-") && is_axis(&tokens[at - 1].text) {
+            let (sign, value) = (tokens.remove(at), tokens.remove(at));
+            let name = &mut tokens[at - 1];
+            name.text = format!("{}{}{}", name.text, sign.text, value.text);
+            name.span.end = value.span.end;
+        } else {
+            at += 1;
+        }
+    }
 }
 
 fn push(line: &mut Line, text: String, span: Range<usize>) {

@@ -14,6 +14,9 @@ pub(super) struct MoveWords {
     /// PR and PA.
     pub(super) polar: [Option<(f64, bool)>; 2],
     pub(super) radius: Option<f64>,
+    /// `LEN` and `CCA` of `APPR` and `DEP`, in mm and degrees.
+    pub(super) length: Option<f64>,
+    pub(super) arc_angle: Option<f64>,
     pub(super) counter_clockwise: Option<bool>,
     pub(super) normal: [Option<f64>; 3],
     pub(super) tool: [Option<f64>; 3],
@@ -28,7 +31,7 @@ pub(super) struct MoveWords {
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Reader<'_> {
-    fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
+    pub(super) fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
         let mut words = MoveWords {
             retract: (line.word(0) == "M140").then_some(None),
             ..MoveWords::default()
@@ -69,6 +72,10 @@ impl Reader<'_> {
                 "M140" => words.retract = words.retract.or(Some(None)),
                 "MB" | "MBMAX" => words.retract = Some(None),
                 name if name.starts_with("MB") => words.retract = Some(Some(value(self, &name[2..])? * self.unit())),
+                name if name.starts_with("LEN") => {
+                    words.length = Some(value(self, &name[3..])? * self.unit());
+                }
+                name if name.starts_with("CCA") => words.arc_angle = Some(value(self, &name[3..])?),
                 "DR+" => words.counter_clockwise = Some(true),
                 "DR-" => words.counter_clockwise = Some(false),
                 _ => {
@@ -196,12 +203,16 @@ impl Reader<'_> {
                 }
             }
             if calls {
-                self.drill().map_err(whole)?;
+                self.call_cycle().map_err(whole)?;
             }
             return Ok(());
         }
         let Some(target) = self.target(&words, kind, line)? else {
-            return Ok(());
+            return if calls {
+                self.call_cycle().map_err(whole)
+            } else {
+                Ok(())
+            };
         };
         self.corner_ahead(words.rapid, abc)?;
         match kind {
@@ -209,7 +220,7 @@ impl Reader<'_> {
             _ => self.arc_block(kind, &words, target, abc).map_err(whole)?,
         }
         if calls {
-            self.drill().map_err(whole)?;
+            self.call_cycle().map_err(whole)?;
         }
         Ok(())
     }

@@ -108,6 +108,21 @@ impl Reader<'_> {
         self.apply_frames().map_err(|problem| (problem, line.all()))
     }
 
+    /// `TRANS DATUM AXIS X+5`, `TRANS DATUM RESET`: as cycle 7.
+    pub(super) fn datum_block(&mut self, line: &Line) -> Result<(), Located> {
+        match line.word(2) {
+            "AXIS" => self.frame_cycle(7, "1", line),
+            "RESET" => {
+                (self.frames.shift, self.frames.tilted_shift) = ([0.0; 3], [0.0; 3]);
+                self.apply_frames().map_err(|problem| (problem, line.all()))
+            }
+            word => {
+                let problem = NcProblem::unsupported(format!("TRANS DATUM {word} is"), "expected AXIS or RESET");
+                Err((problem, line.all()))
+            }
+        }
+    }
+
     /// `STAY`: the angles that turn the tool to the plane are in Q120 to Q122 for the blocks that follow.
     fn keep_angles(&mut self, normal: [f64; 3], line: &Line) -> Result<(), NcProblem> {
         /// How many blocks behind it are looked at for the letters of the axes.

@@ -82,6 +82,11 @@ impl Routine {
             _ => index,
         };
         let (mut block, _) = own(&self.text, index);
+        // A comment may go on below.
+        let comment = |c: char| c.is_ascii_digit() || c.is_whitespace();
+        if self.text(index).trim_start_matches(comment).starts_with(';') {
+            return block;
+        }
         for below in index + 1..=last {
             let (more, _) = own(&self.text, below);
             block.tokens.extend(more.tokens.into_iter().map(|mut token| {

@@ -97,6 +97,10 @@ impl Reader<'_> {
         }
         let whole = |problem| (problem, line.all());
         self.track.change_tool(tool.filter(|tool| *tool > 0)).map_err(whole)?;
+        // Q108 is the radius of the tool.
+        if let Some(radius) = self.known_radius() {
+            self.parameters.set("Q108", radius / self.unit()).map_err(whole)?;
+        }
         // Oversizes last until the next call of a tool, and are 0 there unless it says otherwise.
         if tool.is_some() || longer.is_some() {
             self.track.lengthen(longer.unwrap_or(0.0)).map_err(whole)?;
@@ -150,7 +154,7 @@ impl Reader<'_> {
                 3 | 13 => self.turn_spindle(Spindle::Clockwise { rpm }, line)?,
                 4 | 14 => self.turn_spindle(Spindle::CounterClockwise { rpm }, line)?,
                 5 => self.turn_spindle(Spindle::Stopped, line)?,
-                6 => {}
+                6 | 19 => {}
                 7 => self.event(EventKind::Coolant(Coolant::Mist), line)?,
                 8 => self.event(EventKind::Coolant(Coolant::Flood), line)?,
                 9 => self.event(EventKind::Coolant(Coolant::Off), line)?,
@@ -198,7 +202,11 @@ impl Reader<'_> {
         match (line.word(1), line.word(2)) {
             ("TCPM", _) => self.control(true).map_err(|problem| (problem, line.all()))?,
             ("RESET", "TCPM") => self.control(false).map_err(|problem| (problem, line.all()))?,
-            ("MODE" | "FEED" | "DWELL" | "S-PULSE", _) => {}
+            ("MODE" | "FEED" | "DWELL" | "S-PULSE" | "SPINDLE" | "TOUCHPROBE", _) => {}
+            // Whether contours are those of the tool or of the part matters to paths in space alone.
+            ("PROG", "PATH") => self
+                .track
+                .note("FUNCTION PROG PATH is ignored: contours are taken as programmed"),
             (word, _) => {
                 let problem = NcProblem::unsupported(
                     format!("FUNCTION {word} is"),

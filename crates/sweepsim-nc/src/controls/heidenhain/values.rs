@@ -1,6 +1,7 @@
 //! Numbers, Q parameters and FN functions.
 
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::line::Line;
 use crate::text::error::{Located, NcProblem};
@@ -8,11 +9,40 @@ use crate::text::error::{Located, NcProblem};
 /// The most Q parameters.
 const MOST: usize = 100_000;
 
+/// What an FN asks for besides a value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Jump {
+    None,
+    /// To a label.
+    To(String),
+    /// A parameter gets what only the control knows: its name, and what that is.
+    Read(String, String),
+    /// Something that moves nothing, by its number.
+    Ignored(u32),
+}
+
 /// Q parameters.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Parameters(BTreeMap<String, f64>);
+pub(super) struct Parameters {
+    values: BTreeMap<String, f64>,
+    /// Whether those that nothing sets are an error: else they are 0, and asked for.
+    strict: bool,
+    asked: RefCell<BTreeSet<String>>,
+}
 
 impl Parameters {
+    pub fn new(strict: bool) -> Self {
+        Self {
+            strict,
+            ..Self::default()
+        }
+    }
+
+    /// Those that have been asked for since, and nothing has set.
+    pub fn asked(&mut self) -> BTreeSet<String> {
+        std::mem::take(self.asked.get_mut())
+    }
+
     /// A number, or a parameter with or without a sign: `+10.5`, `-Q12`, `QL3`.
     pub fn value(&self, text: &str) -> Result<f64, NcProblem> {
         let (sign, rest) = match text.strip_prefix('-') {
@@ -20,12 +50,16 @@ impl Parameters {
             None => (1.0, text.strip_prefix('+').unwrap_or(text)),
         };
         if rest.starts_with('Q') {
-            let value = self.0.get(rest).copied().ok_or_else(|| {
-                NcProblem::syntax(format!(
+            return match self.values.get(rest) {
+                Some(value) => Ok(sign * value),
+                None if self.strict || !is_name(rest) => Err(NcProblem::syntax(format!(
                     "{rest} has no value here: expected {rest} = a number before it"
-                ))
-            })?;
-            return Ok(sign * value);
+                ))),
+                None => {
+                    self.asked.borrow_mut().insert(rest.to_owned());
+                    Ok(0.0)
+                }
+            };
         }
         // Decimal commas are as good as points.
         let plain = rest.replace(',', ".");
@@ -51,8 +85,8 @@ impl Parameters {
         if !value.is_finite() {
             return Err(NcProblem::value(format!("the value of {name}"), value, "finite"));
         }
-        if self.0.len() < MOST || self.0.contains_key(name) {
-            self.0.insert(name.to_owned(), value);
+        if self.values.len() < MOST || self.values.contains_key(name) {
+            self.values.insert(name.to_owned(), value);
         }
         Ok(())
     }
@@ -85,8 +119,8 @@ impl Parameters {
         self.set(name.trim(), value).map_err(whole)
     }
 
-    /// `FN 1: Q1 = +Q2 + +3`. For jumps, whether to go, and the label.
-    pub fn function(&mut self, line: &Line) -> Result<Option<String>, Located> {
+    /// `FN 1: Q1 = +Q2 + +3`, and what else it asks for.
+    pub fn function(&mut self, line: &Line) -> Result<Jump, Located> {
         let whole = |problem| (problem, line.all());
         let fail = |message: &str| Err((NcProblem::syntax(message.to_owned()), line.all()));
         let mut words: Vec<String> = Vec::new();
@@ -121,7 +155,7 @@ impl Parameters {
                 (12, "LT") => a < b,
                 _ => return fail("expected EQU with FN 9, NE with 10, GT with 11, LT with 12"),
             };
-            return Ok(goes.then(|| label.to_owned()));
+            return Ok(if goes { Jump::To(label.to_owned()) } else { Jump::None });
         }
         let result = match (number, &rest[..]) {
             (0, [_, "=", a]) => value(a)?,
@@ -141,14 +175,26 @@ impl Parameters {
             (8, [_, "=", a, "LEN", b]) => value(a)?.hypot(value(b)?),
             (13, [_, "=", a, "ANG", b]) => value(a)?.atan2(value(b)?).to_degrees(),
             (0..=8 | 13, _) => return fail("this FN has other words: expected such as FN 1: Q1 = +Q2 + +3"),
+            // What the control knows: data of the system, of a table, of the PLC.
+            (18 | 28, _) => {
+                let name = rest.iter().find(|word| is_name(word));
+                let Some(name) = name.map(|name| (*name).to_owned()) else {
+                    return fail("expected FN 18: SYSREAD Q1 = ID… or FN 28: TABREAD Q1 = …");
+                };
+                let of = rest.iter().skip_while(|word| **word != "=").skip(1);
+                let of: Vec<&str> = of.copied().collect();
+                return Ok(Jump::Read(name, of.join(" ")));
+            }
+            // Errors, texts, files, tables, and what goes to the PLC or waits for it.
+            (14..=17 | 19..=27 | 29..=38, _) => return Ok(Jump::Ignored(number)),
             _ => {
-                let problem = NcProblem::unsupported(format!("FN {number} is"), "expected FN 0 to FN 13");
+                let problem = NcProblem::unsupported(format!("FN {number} is"), "expected FN 0 to FN 38");
                 return Err(whole(problem));
             }
         };
         let name = rest[0].to_owned();
         self.set(&name, result).map_err(whole)?;
-        Ok(None)
+        Ok(Jump::None)
     }
 }
 
@@ -256,6 +302,13 @@ impl Parser<'_> {
             "ATAN" => self.atom()?.atan().to_degrees(),
             "SQRT" => self.atom()?.sqrt(),
             "SQ" => self.atom()?.powi(2),
+            "SGN" => {
+                let value = self.atom()?;
+                if value == 0.0 { 0.0 } else { value.signum() }
+            }
+            "LN" => self.atom()?.ln(),
+            "LOG" => self.atom()?.log10(),
+            "EXP" => self.atom()?.exp(),
             "ABS" => self.atom()?.abs(),
             "NEG" => -self.atom()?,
             "INT" => self.atom()?.trunc(),
@@ -277,7 +330,7 @@ mod tests {
 
     #[test]
     fn functions_and_formulas() {
-        let mut parameters = Parameters::default();
+        let mut parameters = Parameters::new(true);
         for (text, name, expected) in [
             ("FN 0: Q1 = +5", "Q1", 5.0),
             ("FN0: Q2=-Q1", "Q2", -5.0),
@@ -293,22 +346,19 @@ mod tests {
         ] {
             let block = line(&text.replace("FN0:", "FN 0:"));
             if text.starts_with("FN") {
-                assert_eq!(parameters.function(&block).unwrap(), None);
+                assert_eq!(parameters.function(&block).unwrap(), Jump::None);
             } else {
                 parameters.formula(&block).unwrap();
             }
             assert!((parameters.value(name).unwrap() - expected).abs() < 1e-12, "{text}");
         }
         assert_eq!(
-            parameters
-                .function(&line("FN 9: IF +Q1 EQU +5 GOTO LBL 3"))
-                .unwrap()
-                .as_deref(),
-            Some("3")
+            parameters.function(&line("FN 9: IF +Q1 EQU +5 GOTO LBL 3")).unwrap(),
+            Jump::To("3".into())
         );
         assert_eq!(
             parameters.function(&line("FN 11: IF +Q1 GT +9 GOTO LBL 3")).unwrap(),
-            None
+            Jump::None
         );
         for (text, message) in [
             ("FN 4: Q1 = +1 DIV +0", "a division by 0"),
@@ -316,10 +366,7 @@ mod tests {
                 "FN 1: Q1 = +Q99 + +1",
                 "Q99 has no value here: expected Q99 = a number before it",
             ),
-            (
-                "FN 18: SYSREAD Q1 = ID20",
-                "FN 18 is not supported yet: expected FN 0 to FN 13",
-            ),
+            ("FN 39: Q1 = 2", "FN 39 is not supported yet: expected FN 0 to FN 38"),
         ] {
             assert_eq!(parameters.function(&line(text)).unwrap_err().0.to_string(), message);
         }

@@ -2,13 +2,16 @@
 
 use std::ops::Range;
 
-use super::cycles::hole_cycle;
+use super::arguments::Arguments;
+use super::contour_cycles::CONTOURS;
+use super::cycles::{HOLES, hole_cycle, thread};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
-use super::milling::workpiece;
+use super::milling::{MILLING, workpiece};
+use super::patterns::PATTERNS;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
-use crate::drive::{Coordinates, Corners, Cycle};
+use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::text::error::{Located, NcProblem};
@@ -151,7 +154,7 @@ impl Reader<'_> {
         span: &Range<usize>,
     ) -> Result<(), Located> {
         let here = |problem: NcProblem| (problem, span.clone());
-        let (name, arguments, modal) = match name {
+        let (name, given, modal) = match name {
             "CALL" | "PCALL" => {
                 return Err(here(NcProblem::unsupported(
                     "CALL is",
@@ -160,22 +163,36 @@ impl Reader<'_> {
             }
             _ => (name, arguments, self.modal_word(span)),
         };
-        let values = self.values(arguments)?;
-        if name.starts_with("CYCLE")
-            || matches!(name, "POCKET3" | "POCKET4" | "SLOT1" | "LONGHOLE" | "HOLES1" | "HOLES2")
-        {
-            let numbers: Vec<Option<f64>> = values
-                .iter()
-                .map(|value| match value {
-                    Some(Value::Number(number)) => Some(*number),
-                    _ => None,
-                })
-                .collect();
+        let values = self.values(given)?;
+        let known = self.knows(name);
+        let unit = self.modes.unit();
+        let cycle = Arguments {
+            name,
+            values: &values,
+            unit,
+        };
+        if !known && CONTOURS.contains(&name) {
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
-            if self.places(name, &numbers).map_err(here)? || self.mill(name, &numbers).map_err(here)? {
+            return self.contour_cycle(&cycle).map_err(here);
+        }
+        if !known && (name.starts_with("CYCLE") || MILLING.contains(&name) || PATTERNS.contains(&name)) {
+            self.track.use_offset(&mut self.frames.work).map_err(here)?;
+            if self.places(&cycle).map_err(here)? || self.mill(&cycle).map_err(here)? {
                 return Ok(());
             }
-            let cycle = Cycle::Hole(hole_cycle(name, &numbers, self.modes.unit()).map_err(here)?);
+            let arguments = cycle;
+            let cycle = match name {
+                _ if HOLES.contains(&name) => Cycle::Holes(vec![hole_cycle(&arguments).map_err(here)?]),
+                "CYCLE70" | "CYCLE78" => {
+                    let tool = self.cutter_radius(UNKNOWN_TOOL).map_err(here)?;
+                    Cycle::Holes(thread(&arguments, tool).map_err(here)?)
+                }
+                _ => Cycle::Unknown(name.to_owned()),
+            };
+            if name == "CYCLE70" && !modal {
+                let place = [12, 13].map(|index| arguments.length(index));
+                self.go_to_place(place, f64::NEG_INFINITY).map_err(here)?;
+            }
             if modal {
                 self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
                 return Ok(());
@@ -185,11 +202,13 @@ impl Reader<'_> {
                 .cycle_here(&cycle, self.modes.plane, self.uncertain)
                 .map_err(here);
         }
-        if !self.knows(name) {
-            return Err(here(NcProblem::unsupported(
-                format!("{name} is"),
-                format!("it is neither known nor a subprogram beside this file; expected a file {name}.SPF"),
-            )));
+        if !known {
+            // A cycle of the machine's builder or of ShopMill has arguments; a subprogram may have, too.
+            return match given {
+                Some(_) => self.track.leave_out_cycle(name),
+                None => self.track.leave_out_program(name, &format!("{name}.SPF")),
+            }
+            .map_err(here);
         }
         let values: Vec<Value> = values
             .into_iter()

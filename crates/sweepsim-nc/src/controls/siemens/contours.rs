@@ -4,7 +4,7 @@ use super::interpreter::Reader;
 use super::language::expression::Value;
 use super::state::{Motion, PoleFrom};
 use super::words::{Action, Meaning, Words};
-use crate::drive::{CompensationSettings, Corner, CornerShape, Corners};
+use crate::drive::{CompensationSettings, Corner, CornerShape, Corners, DiameterAsked};
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -21,7 +21,7 @@ impl Reader<'_> {
         if self.uncertain && self.track.known().is_none() {
             return Ok(());
         }
-        let radius = self.cutter_radius().map_err(whole)?;
+        let radius = self.cutter_radius(0.0).map_err(whole)?;
         if self.modes.corners == Corners::Arcs && self.modes.distortion != 0.0 {
             return Err(whole(NcProblem::value(
                 "DISC",
@@ -40,16 +40,18 @@ impl Reader<'_> {
         self.track.compensate(side, self.modes.plane).map_err(whole)
     }
 
-    /// The radius of the tool's edge, with its allowance.
-    pub(super) fn cutter_radius(&mut self) -> Result<f64, NcProblem> {
+    /// The radius of the tool's edge, with its allowance. `unknown`: its diameter where nobody tells it, in mm.
+    pub(super) fn cutter_radius(&mut self, unknown: f64) -> Result<f64, NcProblem> {
         let edge = self.modes.edge;
         if edge == 0 {
             return Ok(self.modes.allowance);
         }
-        let Some(tool) = self.track.tool else {
-            return Err(NcProblem::syntax(
-                "cutter compensation without a tool: expected T before it",
-            ));
+        let tool = match self.track.tool {
+            None if self.track.strict() => {
+                let problem = "cutter compensation without a tool: expected T before it";
+                return Err(NcProblem::syntax(problem));
+            }
+            tool => tool.unwrap_or(0),
         };
         let own = self.globals.get(&format!("$TC_DP6[{tool}][{edge}]")).cloned();
         let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
@@ -57,26 +59,26 @@ impl Reader<'_> {
             .or(self.options.diameters.get(&tool).copied())
             .filter(|_| edge == 1);
         let radius = match (own, table) {
-            (Some(Value::Number(radius)), _) => radius,
-            (_, Some(diameter)) => 0.5 * diameter,
-            _ if edge == 1
-                && let Some(diameter) = self.assume_tool_diameter(tool) =>
-            {
-                0.5 * diameter
-            }
+            (Some(Value::Number(radius)), _) => Some(radius),
+            (_, Some(diameter)) => Some(0.5 * diameter),
             _ => {
-                return Err(NcProblem::syntax(format!(
-                    "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or \
-                     $TC_DP6[{tool},{edge}]= before it"
-                )));
+                let asked = DiameterAsked {
+                    register: &format!("the radius of T{tool} D{edge}"),
+                    option: &format!("D{tool}"),
+                    unit: self.modes.unit(),
+                    wear: false,
+                    unknown,
+                };
+                self.track.assume_diameter(&asked).map(|diameter| 0.5 * diameter)
             }
         };
+        let radius = radius.ok_or_else(|| {
+            NcProblem::syntax(format!(
+                "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or \
+                 $TC_DP6[{tool},{edge}]= before it"
+            ))
+        })?;
         Ok(radius + self.modes.allowance)
-    }
-
-    fn assume_tool_diameter(&mut self, tool: u32) -> Option<f64> {
-        let (register, unit) = (format!("the radius of T{tool} D1"), self.modes.unit());
-        self.track.assume_diameter(&register, &format!("D{tool}"), unit, false)
     }
 
     /// Words of corners.

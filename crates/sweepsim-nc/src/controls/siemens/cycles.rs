@@ -1,25 +1,20 @@
 //! Drilling cycles.
 
+use super::arguments::Arguments;
 use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::text::error::NcProblem;
 
+/// The drilling cycles.
+pub(super) const HOLES: [&str; 8] = [
+    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89",
+];
+
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
-pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Result<HoleCycle, NcProblem> {
-    if !matches!(
-        name,
-        "CYCLE81" | "CYCLE82" | "CYCLE83" | "CYCLE84" | "CYCLE840" | "CYCLE85" | "CYCLE86" | "CYCLE89"
-    ) {
-        return Err(NcProblem::unsupported(
-            format!("{name} is"),
-            "expected CYCLE81, 82, 83, 84, 840, 85, 86 or 89, or the moves that it makes",
-        ));
-    }
-    let get = |index: usize| arguments.get(index).copied().flatten();
+pub(super) fn hole_cycle(arguments: &Arguments) -> Result<HoleCycle, NcProblem> {
+    let (name, unit) = (arguments.name, arguments.unit);
+    let get = |index: usize| arguments.get(index);
     let length = |index: usize| get(index).map(|value| value * unit);
-    let need = |index: usize, parameter: &str| {
-        length(index).ok_or_else(|| NcProblem::syntax(format!("{name} without {parameter}: expected a number")))
-    };
-    let (retract, reference) = (need(0, "RTP")?, need(1, "RFP")?);
+    let (retract, reference) = (arguments.need(0, "RTP")?, arguments.need(1, "RFP")?);
     let clearance = length(2).unwrap_or(0.0).abs();
     // The depth is absolute, or relative to the surface.
     let depth = match (length(3), length(4)) {
@@ -71,4 +66,46 @@ pub(super) fn hole_cycle(name: &str, arguments: &[Option<f64>], unit: f64) -> Re
         work,
         ..HoleCycle::new(reference + clearance, depth, dwell, feeds_out)
     })
+}
+
+/// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;
+/// `CYCLE78(RTP, RFP, SDIS, DP, ADPR, FDPR, LDPR, DIAM, PIT, PITA, …)`: a hole that is drilled and threaded by the same tool. The helix is made over the whole depth.
+pub(super) fn thread(arguments: &Arguments, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
+    let name = arguments.name;
+    let get = |index: usize| arguments.get(index);
+    let need = |index: usize, parameter: &str| arguments.need(index, parameter);
+    let [retract, start, surface, bottom] = arguments.levels(None)?;
+    let mills = name == "CYCLE70";
+    let diameter = need(if mills { 4 } else { 7 }, "the diameter")?.abs();
+    let pitch = need(if mills { 7 } else { 8 }, "PIT")?.abs();
+    let outside = mills && get(11) == Some(1.0);
+    let radius = match outside {
+        true => 0.5 * diameter - need(5, "H1")?.abs() + tool,
+        false => 0.5 * diameter - tool,
+    };
+    if !(radius > 0.0 && pitch > 0.0 && bottom < surface) {
+        let found = format!(
+            "{diameter} mm wide, {} mm deep, with a pitch of {pitch} mm",
+            surface - bottom
+        );
+        let expected = format!(
+            "wider than the tool, {} mm, below its surface, with a pitch",
+            2.0 * tool
+        );
+        return Err(NcProblem::value(format!("the thread of {name}"), found, expected));
+    }
+    let hole = HoleCycle {
+        end: retract,
+        feed: arguments.feed(if mills { 10 } else { 15 }),
+        ..HoleCycle::new(start, bottom, None, false)
+    };
+    let around = HoleCycle {
+        work: HoleWork::Helix {
+            radius,
+            turns: (start - bottom) / pitch,
+            outside,
+        },
+        ..hole.clone()
+    };
+    Ok(if mills { vec![around] } else { vec![hole, around] })
 }

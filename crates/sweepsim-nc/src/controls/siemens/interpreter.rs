@@ -1,8 +1,10 @@
 //! Runs a program: jumps, loops, calls and variables.
 
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
+use super::contour_cycles::Contours;
 use super::language::expression::{self, Expression, Value};
 use super::language::routine::{Routine, parts};
 use super::language::structures::{Item, Search, Statement};
@@ -50,6 +52,10 @@ pub(super) struct Reader<'a> {
     /// After a problem: what the program has said so far is not fully known.
     pub uncertain: bool,
     pub ended: bool,
+    /// Variables that the block has asked for, and nothing sets.
+    pub(super) asked: RefCell<BTreeSet<String>>,
+    /// The contours of `CYCLE62`, and whether a cycle has milled them: the next one then begins anew.
+    pub(super) contours: Contours,
     /// A call to make after the block.
     pub pending: Option<(String, Vec<Value>, usize)>,
 }
@@ -68,6 +74,8 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         globals: BTreeMap::new(),
         uncertain: false,
         ended: false,
+        asked: RefCell::default(),
+        contours: Contours::default(),
         pending: None,
     };
     reader.add(Rc::clone(text), 0);
@@ -134,7 +142,9 @@ impl Running for Reader<'_> {
     }
 
     fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
-        self.line(routine, index)
+        let result = self.line(routine, index);
+        self.say_asked();
+        result
     }
 
     fn doubt(&mut self) {

@@ -1,76 +1,37 @@
-//! Milling cycles, and patterns of places where a cycle is called.
+//! Milling cycles.
 //!
-//! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 and CYCLE801 were
+//! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 was
 //! compared with two of them.
 
+use super::arguments::Arguments;
 use super::interpreter::Reader;
 use super::language::expression::Value;
-use super::state::Modal;
-use crate::drive::{Cycle, Pocket};
+use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::model::stock::StockDescription;
-use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// The most places of a pattern.
-const MOST_PLACES: u32 = 10_000;
+pub(super) const MOST_PLACES: u32 = 10_000;
 
-/// A milling cycle, and where its shapes are: middles in the plane, and turns.
+/// The milling cycles.
+pub(super) const MILLING: [&str; 8] = [
+    "CYCLE61", "POCKET3", "POCKET4", "CYCLE76", "CYCLE77", "SLOT1", "SLOT2", "LONGHOLE",
+];
+/// A milling cycle, and where its shapes are: middles in the plane, and turns; of slots on a circle, the radius of their middle lines and how long they are, in degrees.
 pub(super) struct Milled {
     pub pocket: Pocket,
     pub places: Vec<([f64; 2], f64)>,
+    pub bent: Option<[f64; 2]>,
 }
 
-/// The arguments of a cycle.
-struct Arguments<'a> {
-    name: &'a str,
-    values: &'a [Option<f64>],
-    unit: f64,
-}
-
-impl Arguments<'_> {
-    fn get(&self, index: usize) -> Option<f64> {
-        self.values.get(index).copied().flatten()
-    }
-
-    fn length(&self, index: usize) -> f64 {
-        self.get(index).unwrap_or(0.0) * self.unit
-    }
-
-    fn need(&self, index: usize, parameter: &str) -> Result<f64, NcProblem> {
-        let name = self.name;
-        let problem = || NcProblem::syntax(format!("{name} without {parameter}: expected a number"));
-        self.get(index).map(|value| value * self.unit).ok_or_else(problem)
-    }
-
-    /// Where the tool is at last, where it begins, the surface and the bottom: RTP, RFP, SDIS, DP and, with `relative`, DPR.
-    fn levels(&self, relative: Option<usize>) -> Result<[f64; 4], NcProblem> {
-        let (retract, surface) = (self.need(0, "RTP")?, self.need(1, "RFP")?);
-        let bottom = match relative.and_then(|index| self.get(index)) {
-            Some(depth) if depth != 0.0 => surface - depth.abs() * self.unit,
-            _ => self.need(3, "DP")?,
-        };
-        Ok([retract, surface + self.length(2).abs(), surface, bottom])
-    }
-
-    /// A feed, if it is above 0.
-    fn feed(&self, index: usize) -> Option<f64> {
-        self.get(index).filter(|feed| *feed > 0.0)
-    }
-
-    /// Whether the last digit of a way of machining asks for finishing alone.
-    fn finishes(&self, index: usize) -> bool {
-        self.get(index).is_some_and(|kind| kind % 10.0 >= 2.0)
-    }
-}
-
-/// `POCKET3`, `POCKET4`, `CYCLE61`, `CYCLE76`, `CYCLE77`, `SLOT1`, `LONGHOLE`, with a tool of this radius; `None` for others.
-pub(super) fn milled(name: &str, values: &[Option<f64>], unit: f64, tool: f64) -> Option<Result<Milled, NcProblem>> {
-    let arguments = Arguments { name, values, unit };
-    Some(match name {
-        "POCKET3" | "CYCLE76" => rectangle(&arguments, tool),
-        "POCKET4" | "CYCLE77" => circle(&arguments, tool),
-        "SLOT1" | "LONGHOLE" => slots(&arguments, tool),
-        "CYCLE61" => facing(&arguments, tool),
+/// One of the [milling cycles](MILLING), with a tool of this radius; `None` for others.
+pub(super) fn milled(arguments: &Arguments, tool: f64) -> Option<Result<Milled, NcProblem>> {
+    Some(match arguments.name {
+        "POCKET3" | "CYCLE76" => rectangle(arguments, tool),
+        "POCKET4" | "CYCLE77" => circle(arguments, tool),
+        "SLOT1" | "LONGHOLE" => slots(arguments, tool),
+        "SLOT2" => bent_slots(arguments, tool),
+        "CYCLE61" => facing(arguments, tool),
         _ => return None,
     })
 }
@@ -142,6 +103,7 @@ fn rectangle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: vec![([arguments.length(7 + at), arguments.length(8 + at)], 0.0)],
+        bent: None,
     })
 }
 
@@ -173,6 +135,7 @@ fn circle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: vec![([arguments.length(5 + at), arguments.length(6 + at)], 0.0)],
+        bent: None,
     })
 }
 
@@ -194,6 +157,7 @@ fn facing(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             [arguments.length(4) + 0.5 * length, arguments.length(5) + 0.5 * width],
             0.0,
         )],
+        bent: None,
     })
 }
 
@@ -241,80 +205,55 @@ fn slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             ..pocket(levels, tool)
         },
         places: (0..count).map(place).collect(),
+        bent: None,
     })
 }
 
-/// `HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM)`, `HOLES2(CPA, CPO, RAD, STA1, INDA, NUM)`, `CYCLE801(SPCA, SPCO, STA, DIS1, DIS2, NUM1, NUM2)`: places in the plane; `None` for others.
-pub(super) fn pattern(name: &str, values: &[Option<f64>], unit: f64) -> Option<Result<Vec<[f64; 2]>, NcProblem>> {
-    let arguments = Arguments { name, values, unit };
-    let count = |index: usize| {
-        let count = arguments.get(index).unwrap_or(1.0);
-        NcProblem::whole(
-            format!("the number of places of {name}"),
-            count,
-            1..=MOST_PLACES,
-            "a whole number from 1 on",
-        )
-    };
-    let (x, y) = (arguments.length(0), arguments.length(1));
-    let turned = |angle: f64, a: f64, b: f64| {
-        let (sin, cos) = angle.to_radians().sin_cos();
-        [x + a * cos - b * sin, y + a * sin + b * cos]
-    };
-    let angle = |index: usize| arguments.get(index).unwrap_or(0.0);
-    Some(match name {
-        "HOLES1" => count(5).map(|count| {
-            let (first, step) = (arguments.length(3), arguments.length(4));
-            (0..count)
-                .map(|k| turned(angle(2), first + f64::from(k) * step, 0.0))
-                .collect()
-        }),
-        "HOLES2" => count(5).map(|count| {
-            let step = arguments
-                .get(4)
-                .filter(|step| *step != 0.0)
-                .unwrap_or(360.0 / f64::from(count));
-            let radius = arguments.length(2);
-            (0..count)
-                .map(|k| turned(angle(3) + f64::from(k) * step, radius, 0.0))
-                .collect()
-        }),
-        "CYCLE801" => count(5).and_then(|columns| {
-            let rows = count(6)?;
-            if columns.saturating_mul(rows) > MOST_PLACES {
-                return Err(NcProblem::value(
-                    "the number of places of CYCLE801",
-                    columns * rows,
-                    "at most 10000",
-                ));
-            }
-            let (across, along) = (arguments.length(3), arguments.length(4));
-            let place = |k: u32| {
-                let (row, column) = (k / columns, k % columns);
-                // To and fro.
-                let column = if row % 2 == 0 { column } else { columns - 1 - column };
-                turned(angle(2), f64::from(column) * across, f64::from(row) * along)
-            };
-            Ok((0..columns * rows).map(place).collect())
-        }),
-        _ => return None,
+/// `SLOT2(RTP, RFP, SDIS, DP, DPR, NUM, AFSL, WID, CPA, CPO, RAD, STA1, INDA, FFD, FFP1, MID, CDIR, FAL, VARI, …)`: slots along a circle, each `AFSL` degrees long.
+fn bent_slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
+    let levels = arguments.levels(Some(4))?;
+    let count = arguments.get(5).unwrap_or(1.0);
+    let count = NcProblem::whole("NUM of SLOT2", count, 1..=MOST_PLACES, "a whole number from 1 on")?;
+    let long = arguments.get(6).unwrap_or(0.0);
+    let width = arguments.need(7, "WID")?.abs();
+    let [x, y, radius] = [8, 9, 10].map(|index| arguments.length(index));
+    let step = arguments.get(12).filter(|step| *step != 0.0);
+    let step = step.unwrap_or(360.0 / f64::from(count));
+    let first = arguments.get(11).unwrap_or(0.0);
+    let finishes = arguments.finishes(18);
+    Ok(Milled {
+        pocket: Pocket {
+            half: [radius.max(0.5 * width), 0.5 * width],
+            corner: 0.5 * width,
+            infeed: arguments.length(15),
+            left: [if finishes { 0.0 } else { arguments.length(17) }, 0.0],
+            rim_alone: finishes,
+            feed: arguments.feed(14),
+            plunge: arguments.feed(13),
+            ..pocket(levels, tool)
+        },
+        places: (0..count).map(|k| ([x, y], first + f64::from(k) * step)).collect(),
+        bent: Some([radius, long]),
     })
 }
 
 impl Reader<'_> {
     /// A milling cycle: at once, each of its shapes.
-    pub(super) fn mill(&mut self, name: &str, values: &[Option<f64>]) -> Result<bool, NcProblem> {
-        if !matches!(
-            name,
-            "CYCLE61" | "POCKET3" | "POCKET4" | "CYCLE76" | "CYCLE77" | "SLOT1" | "LONGHOLE"
-        ) {
-            return Ok(false);
-        }
-        let tool = self.cutter_radius()?;
-        let Some(milled) = milled(name, values, self.modes.unit(), tool) else {
+    pub(super) fn mill(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
+        let name = arguments.name;
+        let Some(shape) = milled(arguments, 0.0) else {
             return Ok(false);
         };
-        let Milled { mut pocket, places } = milled?;
+        let unknown = shape?.pocket.widest_unknown_tool();
+        let tool = self.cutter_radius(unknown)?;
+        let Some(milled) = milled(arguments, tool) else {
+            return Ok(false);
+        };
+        let Milled {
+            mut pocket,
+            places,
+            bent,
+        } = milled?;
         if self.track.known().is_none() && self.uncertain {
             return Ok(true);
         }
@@ -322,45 +261,19 @@ impl Reader<'_> {
         for (middle, further) in places {
             self.go_to_place(middle, pocket.start)?;
             pocket.turn = turn + further;
-            let cycle = Cycle::Pocket(name.to_owned(), Box::new(pocket.clone()));
+            let shape = match bent {
+                None => Shape::Pocket(pocket.clone()),
+                Some([radius, long]) => Shape::ArcSlot(ArcSlot {
+                    pocket: pocket.clone(),
+                    radius,
+                    first: if long < 0.0 { further + long } else { further },
+                    long: long.abs(),
+                }),
+            };
+            let cycle = Cycle::Shape(name.to_owned(), Box::new(shape));
             self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)?;
         }
         Ok(true)
-    }
-
-    /// A pattern: the modal cycle at each of its places.
-    pub(super) fn places(&mut self, name: &str, values: &[Option<f64>]) -> Result<bool, NcProblem> {
-        let Some(places) = pattern(name, values, self.modes.unit()) else {
-            return Ok(false);
-        };
-        let places = places?;
-        let Some((_, Modal::Cycle(cycle))) = self.modes.modal_call.clone() else {
-            let taken = "no cycle is modal: it moves nothing";
-            self.track
-                .assume(Assumption::new(format!("what {name} calls"), taken, "MCALL before it"));
-            return Ok(true);
-        };
-        for place in places {
-            self.go_to_place(place, f64::NEG_INFINITY)?;
-            self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)?;
-        }
-        Ok(true)
-    }
-
-    /// In rapid over a place, not below a level.
-    fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
-        let [u, v, w] = self.modes.plane;
-        let Some(mut at) = self.track.known() else {
-            return Err(NcProblem::syntax(
-                "a cycle at an unknown position: expected a move to X, Y and Z before it",
-            ));
-        };
-        if at[w] < level {
-            at[w] = level;
-            self.track.line(at, self.track.abc, true)?;
-        }
-        (at[u], at[v]) = (a, b);
-        self.track.line(at, self.track.abc, true)
     }
 }
 

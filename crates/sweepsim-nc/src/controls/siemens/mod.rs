@@ -11,7 +11,9 @@
 //! Splines, synchronous actions and other cycles are errors with their position.
 
 mod arcs;
+mod arguments;
 mod codes;
+mod contour_cycles;
 mod contours;
 mod cycles;
 mod frames;
@@ -19,6 +21,7 @@ mod interpreter;
 mod language;
 mod milling;
 mod moves;
+mod patterns;
 mod state;
 mod variables;
 mod words;

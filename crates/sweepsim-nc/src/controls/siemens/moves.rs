@@ -24,11 +24,8 @@ impl Reader<'_> {
         if let Some(word) = words.get("L") {
             let name = format!("L{}", word.value);
             if !self.knows(&name) {
-                let problem = NcProblem::unsupported(
-                    format!("{name} is"),
-                    format!("there is no subprogram {name}.SPF beside this file"),
-                );
-                return Err((problem, word.span.clone()));
+                let left = self.track.leave_out_program(&name, &format!("{name}.SPF"));
+                return left.map_err(|problem| (problem, word.span.clone()));
             }
             self.pending = Some((
                 name,

@@ -6,6 +6,7 @@ use super::interpreter::{Level, MOST_VARIABLES, Reader};
 use super::language::expression::{self, Expression, Value};
 use super::language::structures::Item;
 use crate::controls::run::DEEPEST_CALL;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -43,10 +44,13 @@ impl Reader<'_> {
             return Ok(value.clone());
         }
         if name.starts_with('$') {
-            return Err(NcProblem::unsupported(
-                format!("the system variable {name} is"),
-                "only the control knows it; expected a number",
-            ));
+            if self.track.strict() {
+                return Err(NcProblem::unsupported(
+                    format!("the system variable {name} is"),
+                    "only the control knows it; expected a number",
+                ));
+            }
+            return Ok(self.without_value(name));
         }
         // R parameters are 0 unless set; elements of arrays too.
         let parameter = name
@@ -60,14 +64,46 @@ impl Reader<'_> {
         {
             return Ok(value.clone());
         }
-        Err(NcProblem::syntax(format!(
-            "the variable {name} has no value here: expected DEF and a value before it"
-        )))
+        if self.track.strict() {
+            return Err(NcProblem::syntax(format!(
+                "the variable {name} has no value here: expected DEF and a value before it"
+            )));
+        }
+        Ok(self.without_value(name))
+    }
+
+    /// What nothing sets, or only the control knows, is 0: it is said after the block.
+    fn without_value(&self, name: &str) -> Value {
+        self.asked.borrow_mut().insert(name.to_owned());
+        Value::Number(0.0)
+    }
+
+    /// Says which variables the block has asked for in vain.
+    pub(super) fn say_asked(&mut self) {
+        for name in std::mem::take(self.asked.get_mut()) {
+            let settle = format!("{name} = … in the program, or the program that calls this one");
+            let taken = if name.starts_with('$') {
+                "0: only the control knows it"
+            } else {
+                "0: nothing sets it"
+            };
+            let assumption = Assumption::new(format!("the value of {name}"), taken, settle);
+            self.track.assume(assumption);
+        }
     }
 
     pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
-        // The radius of a tool's edge moves nothing by itself.
-        if name.starts_with('$') && !name.starts_with("$TC_DP6[") {
+        // Timers, markers and outputs move nothing, and neither does the radius of a tool's edge by itself.
+        const STORED: [&str; 7] = [
+            "$TC_DP6[",
+            "$AC_TIMER",
+            "$AC_MARKER",
+            "$AC_PARAM",
+            "$A_OUT",
+            "$A_DB",
+            "$AN_",
+        ];
+        if name.starts_with('$') && !STORED.iter().any(|stored| name.starts_with(stored)) {
             return Err(NcProblem::unsupported(
                 format!("setting the system variable {name} is"),
                 "it could move frames or axes; expected a program without it",

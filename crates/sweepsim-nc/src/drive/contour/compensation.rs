@@ -19,6 +19,9 @@ use super::stroke::{ArcPlane, Bend, CompensationSettings, Item, ProgramPlace, St
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
+/// What is said of a place that is too narrow.
+pub(crate) const NARROW: &str = "does not fit between the moves";
+
 /// Compensation while it is on.
 #[derive(Clone, Debug)]
 pub(crate) struct Compensation {
@@ -156,7 +159,7 @@ impl Compensation {
     fn warning(&self, found: TooNarrow, place: ProgramPlace) -> Item {
         let [a, b] = found.lines;
         let text = format!(
-            "the tool of radius {} mm does not fit between the moves of lines {} and {}: it goes {:.3} mm into the contour",
+            "the tool of radius {} mm {NARROW} of lines {} and {}: it goes {:.3} mm into the contour",
             self.side.radius,
             a.min(b),
             a.max(b),

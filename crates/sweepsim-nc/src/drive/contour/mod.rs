@@ -9,6 +9,6 @@ mod queue;
 mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
-pub(crate) use compensation::Compensation;
+pub(crate) use compensation::{Compensation, NARROW};
 pub(crate) use queue::Contour;
 pub(crate) use stroke::{ArcPlane, Bend, CompensationSettings, Corners, Item, ProgramPlace, Stroke};

@@ -13,6 +13,9 @@ use crate::text::error::NcProblem;
 /// The most pecks of one hole, or turns of a helix.
 const MOST_PECKS: f64 = 1e5;
 
+/// How far beside a stud the tool goes down, in mm.
+pub(super) const BESIDE: f64 = 2.0;
+
 /// What a control does at each hole.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct HoleCycle {
@@ -58,10 +61,11 @@ pub(crate) enum HoleWork {
     #[default]
     Plunge,
     Pecks(Pecks),
-    /// Around in so many turns, counter-clockwise or negative, and once more around at the bottom.
+    /// Around in so many turns, counter-clockwise or negative, and once more around at the bottom; outside of a stud, or within a hole.
     Helix {
         radius: f64,
         turns: f64,
+        outside: bool,
     },
     /// From below: down beside the axis, across to it, and up. In rapid along the hole (Fanuc), or at the feed, and back down
     /// before the tool leaves the axis (Heidenhain).
@@ -126,6 +130,12 @@ impl HolePlace {
     }
 }
 
+/// The point at a radius after so many turns from the first direction.
+fn turned(radius: f64, turns: f64) -> [f64; 2] {
+    let (sin, cos) = (turns * TAU).sin_cos();
+    [radius * cos, radius * sin]
+}
+
 /// On the axis of the hole.
 const CENTRE: [f64; 2] = [0.0; 2];
 
@@ -151,22 +161,6 @@ impl Track {
         self.feed = modal;
         made
     }
-
-    /// Makes a hole where the tool is, as a call; nothing where an earlier problem has made that unknown.
-    pub(super) fn hole_here(&mut self, cycle: &HoleCycle, plane: ArcPlane, uncertain: bool) -> Result<(), NcProblem> {
-        match self.known() {
-            Some(here) => {
-                self.calls()?;
-                self.hole(cycle, HolePlace::in_plane(plane, here))?;
-                self.returns();
-                Ok(())
-            }
-            None if uncertain => Ok(()),
-            None => Err(NcProblem::syntax(
-                "a cycle at an unknown position: expected a move to X, Y and Z before it",
-            )),
-        }
-    }
 }
 
 impl Hole<'_> {
@@ -178,7 +172,15 @@ impl Hole<'_> {
         match cycle.work {
             HoleWork::Plunge => {}
             HoleWork::Pecks(pecks) => self.pecks(&pecks)?,
-            HoleWork::Helix { radius, turns } => self.helix(radius, turns)?,
+            HoleWork::Helix { radius, turns, outside } => {
+                self.helix(radius, turns, outside)?;
+                if outside {
+                    let out = turned(radius + BESIDE, turns);
+                    self.feed(out, cycle.bottom, cycle.feed)?;
+                    self.rapid(out, cycle.end)?;
+                    return self.rapid(CENTRE, cycle.end);
+                }
+            }
             HoleWork::Back { up, feed, rapid } => return self.back(up, feed, rapid),
         }
         self.feed(CENTRE, cycle.bottom, cycle.feed)?;
@@ -229,15 +231,19 @@ impl Hole<'_> {
     }
 
     /// To the wall at the start, down in whole turns and a part of one, and once more around.
-    fn helix(&mut self, radius: f64, turns: f64) -> Result<(), NcProblem> {
+    fn helix(&mut self, radius: f64, turns: f64, outside: bool) -> Result<(), NcProblem> {
         let cycle = self.cycle;
         check_count("turns", turns.abs())?;
+        if outside {
+            self.rapid([radius + BESIDE, 0.0], cycle.start)?;
+        }
         self.feed([radius, 0.0], cycle.start, cycle.feed)?;
-        let (sin, cos) = (turns * TAU).sin_cos();
+        let end = turns;
         for (turns, level) in [(turns, cycle.start), (turns.signum(), cycle.bottom)] {
+            let from = if level == cycle.start { 0.0 } else { end };
             let arc = Arc {
-                start: self.place.point([radius, 0.0], level),
-                end: self.place.point([radius * cos, radius * sin], cycle.bottom),
+                start: self.place.point(turned(radius, from), level),
+                end: self.place.point(turned(radius, end), cycle.bottom),
                 centre: self.place.point(CENTRE, level),
                 normal: self.place.axes[2],
                 sweep: turns * TAU,

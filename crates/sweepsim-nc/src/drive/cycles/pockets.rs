@@ -5,19 +5,17 @@
 
 use std::f64::consts::TAU;
 
-use super::holes::{HoleCycle, HolePlace};
+use super::holes::{BESIDE, HolePlace};
+use crate::drive::UNKNOWN_TOOL;
 use crate::drive::circular_arc::Arc;
-use crate::drive::contour::{ArcPlane, Bend};
+use crate::drive::contour::Bend;
 use crate::drive::track::Track;
-use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// The most rings and levels of a pocket.
 const MOST: f64 = 1e5;
 /// The largest step between rings, in radii of the tool: farther apart, something would stand between their corners.
-const WIDEST_STEP: f64 = 1.4;
-/// How far beside a stud the tool goes down, in mm.
-const BESIDE: f64 = 2.0;
+pub(super) const WIDEST_STEP: f64 = 1.4;
 
 /// A rectangle with round corners, or a circle, that is milled away or left standing, about a point. Lengths in mm; levels are coordinates along the tool.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,14 +50,23 @@ pub(crate) struct Pocket {
 
 /// A ring: half of the sides of the rectangle of its corners' centres, and their radius.
 #[derive(Clone, Copy, Debug)]
-struct Ring {
+pub(super) struct Ring {
     core: [f64; 2],
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 impl Pocket {
+    /// The diameter of a tool of unknown size that mills this shape.
+    pub fn widest_unknown_tool(&self) -> f64 {
+        let width = 2.0 * self.half[0].min(self.half[1]);
+        match self.raw {
+            None if width > 0.0 => UNKNOWN_TOOL.min(width),
+            _ => UNKNOWN_TOOL,
+        }
+    }
+
     /// The rings, the last one along the shape.
-    fn rings(&self) -> Result<Vec<Ring>, NcProblem> {
+    pub(super) fn rings(&self) -> Result<Vec<Ring>, NcProblem> {
         let Self { half, corner, tool, .. } = *self;
         let corner = corner.min(half[0]).min(half[1]);
         let rim = self.left[0];
@@ -114,7 +121,7 @@ impl Pocket {
     }
 
     /// The levels, the last one the bottom.
-    fn levels(&self) -> Result<Vec<f64>, NcProblem> {
+    pub(super) fn levels(&self) -> Result<Vec<f64>, NcProblem> {
         let floor = self.bottom + self.left[1];
         if !(floor < self.surface) {
             return Err(NcProblem::value(
@@ -132,14 +139,6 @@ impl Pocket {
     }
 }
 
-/// What a control does at each place where a cycle is called.
-#[derive(Clone, Debug)]
-pub(crate) enum Cycle {
-    Hole(HoleCycle),
-    /// With the name of the control's cycle.
-    Pocket(String, Box<Pocket>),
-}
-
 fn check_count(what: &str, count: f64) -> Result<(), NcProblem> {
     if count <= MOST {
         return Ok(());
@@ -152,42 +151,7 @@ fn check_count(what: &str, count: f64) -> Result<(), NcProblem> {
 }
 
 impl Track {
-    /// Calls a cycle where the tool is; nothing where an earlier problem has made that unknown.
-    pub fn cycle_here(&mut self, cycle: &Cycle, plane: ArcPlane, uncertain: bool) -> Result<(), NcProblem> {
-        match cycle {
-            Cycle::Hole(hole) => self.hole_here(hole, plane, uncertain),
-            Cycle::Pocket(name, pocket) => self.pocket_here(name, pocket, plane, uncertain),
-        }
-    }
-
-    /// Mills a pocket or a stud where the tool is; nothing where an earlier problem has made that unknown. `name` is that of the control's cycle.
-    fn pocket_here(&mut self, name: &str, pocket: &Pocket, plane: ArcPlane, uncertain: bool) -> Result<(), NcProblem> {
-        let Some(here) = self.known() else {
-            return match uncertain {
-                true => Ok(()),
-                false => Err(NcProblem::syntax(
-                    "a cycle at an unknown position: expected a move to X, Y and Z before it",
-                )),
-            };
-        };
-        self.calls()?;
-        let modal = self.feed;
-        let made = self.pocket(pocket, HolePlace::in_plane(plane, here));
-        self.feed = modal;
-        self.returns();
-        let taken = "straight down, and around on rings: the shape that it leaves is that of the control";
-        self.assume(
-            Assumption::new(
-                format!("the way of {name} within its shape"),
-                taken,
-                "the moves written out",
-            )
-            .harmless(),
-        );
-        made
-    }
-
-    fn pocket(&mut self, pocket: &Pocket, here: HolePlace) -> Result<(), NcProblem> {
+    pub(super) fn pocket(&mut self, pocket: &Pocket, here: HolePlace) -> Result<(), NcProblem> {
         let (rings, levels) = (pocket.rings()?, pocket.levels()?);
         let (sin, cos) = pocket.turn.to_radians().sin_cos();
         let [u, v, w] = here.axes;
@@ -215,6 +179,7 @@ impl Track {
             }
             self.line(place.point(entry, level), self.abc, false)?;
         }
+        self.feed = modal;
         self.line(place.point(entry, pocket.end), self.abc, true)?;
         self.line(here.point([0.0; 2], pocket.end), self.abc, true)
     }

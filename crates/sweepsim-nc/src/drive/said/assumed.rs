@@ -1,7 +1,5 @@
 //! What is assumed while a program is read: moves in offsets that only the machine knows, coordinates, registers.
 
-use std::rc::Rc;
-
 use sweepsim_motion::Move;
 
 use crate::drive::track::Track;
@@ -11,8 +9,6 @@ use crate::model::poses::ProgramPoses;
 use crate::model::positions::ProgramPositions;
 use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
-use crate::text::numbers::rounded;
-use crate::tools::comments;
 
 impl Track {
     /// Before a move in the active work offset: it must be known relative to those before, or the move is left out.
@@ -207,40 +203,5 @@ impl Track {
     pub fn assume(&mut self, assumption: Assumption) {
         self.doubt();
         self.assumptions.add((self.place.file, self.place.line), assumption);
-    }
-
-    /// Takes the text of the program, whose comments may describe tools.
-    pub fn describe_tools(&mut self, text: &Rc<String>) {
-        self.cutters.comments = Some(Rc::clone(text));
-    }
-
-    /// The diameter of the tool in the spindle, in place of a register that nothing sets: an assumption. `wear`: that it is 0 instead, since a contour cannot be
-    /// offset by the tool's radius.
-    pub fn assume_diameter(&mut self, register: &str, option: &str, unit: f64, wear: bool) -> Option<f64> {
-        let tool = self.tool.filter(|_| !self.strict)?;
-        if let Some(text) = self.cutters.comments.take() {
-            for (number, tool) in comments::read(&text, unit).tools {
-                if let Some(diameter) = tool.diameter {
-                    self.cutters.known.entry(number).or_insert(diameter);
-                }
-            }
-        }
-        let diameter = *self.cutters.known.get(&tool)?;
-        let [size, radius] = [diameter, 0.5 * diameter].map(|mm| rounded(mm / unit));
-        let (taken, other) = match wear {
-            false => (
-                format!("the size of tool {tool}, {size} across"),
-                format!("0 if it is only the tool's wear: the tool is then {radius} nearer to the contour"),
-            ),
-            true => (
-                format!(
-                    "0, the tool's wear: with the size of tool {tool}, {size} across, the contour cannot be offset"
-                ),
-                "the tool's diameter".to_owned(),
-            ),
-        };
-        let settle = format!("--diameters {option}=… (in a job: diameters), {other}");
-        self.assume(Assumption::new(register, taken, settle));
-        Some(if wear { 0.0 } else { diameter })
     }
 }

@@ -38,6 +38,9 @@ impl Track {
 
     /// Something that happens after the moves so far.
     pub fn event(&mut self, kind: EventKind) -> Result<(), NcProblem> {
+        if self.is_recording() {
+            return Ok(());
+        }
         if let EventKind::Message(text) = &kind {
             self.text += text.len();
             if self.text > MOST_TEXT {

@@ -8,6 +8,7 @@ use std::rc::Rc;
 
 use super::keywords::{Keyword, Label, after_letter, keyword, label, skip_head};
 use crate::gcode::syntax::cursor::Cursor;
+use crate::gcode::syntax::user_task;
 use crate::text::kept::KeptText;
 
 /// A text, with its lines.
@@ -61,8 +62,9 @@ pub(crate) struct Labels {
     programs: Vec<usize>,
     /// The lines where a subroutine of LinuxCNC begins.
     subroutines: Vec<usize>,
-    /// Lines by their block number.
+    /// Lines by their block number, and by their labels of letters (Okuma).
     numbers: BTreeMap<u32, Vec<usize>>,
+    names: BTreeMap<String, Vec<usize>>,
 }
 
 impl Labels {
@@ -77,15 +79,21 @@ impl Labels {
                     && let Some(digits) = cursor.digits().filter(|digits| digits.whole && digits.value < 1e9)
                 {
                     labels.numbers.entry(digits.value as u32).or_default().push(line);
+                } else if let Some(name) = user_task::label_of(text) {
+                    labels.names.entry(name).or_default().push(line);
                 }
             }
             let Some(mut cursor) = after_letter(text) else {
                 continue;
             };
-            let Some(name) = label(&mut cursor) else { continue };
+            let Some(name) = label(&mut cursor).or_else(|| user_task::program_of(text).map(Label::Name)) else {
+                continue;
+            };
             let keyword = keyword(&mut cursor);
             match (&name, keyword) {
-                (Label::Number(_), None) => labels.programs.push(line),
+                (_, None) if !matches!(name, Label::Name(_)) || user_task::program_of(text).is_some() => {
+                    labels.programs.push(line);
+                }
                 (_, Some(Keyword::Sub)) => labels.subroutines.push(line),
                 _ => {}
             }
@@ -125,12 +133,20 @@ impl Labels {
         self.subroutines.get(first).copied().filter(|&line| line < to)
     }
 
+    /// The line of a label of letters, likewise.
+    pub(crate) fn named(&self, name: &str, line: usize) -> Option<usize> {
+        self.within(self.names.get(name)?, line)
+    }
+
     /// The line of a block number: the next one after `line` in its program, otherwise the first one in it.
     pub(crate) fn number(&self, number: u32, line: usize) -> Option<usize> {
+        self.within(self.numbers.get(&number)?, line)
+    }
+
+    fn within(&self, lines: &[usize], line: usize) -> Option<usize> {
         let next = self.programs.partition_point(|&start| start <= line);
         let start = next.checked_sub(1).map_or(0, |index| self.programs[index]);
         let end = self.programs.get(next).copied().unwrap_or(usize::MAX);
-        let lines = self.numbers.get(&number)?;
         let within = || lines.iter().copied().filter(|&found| (start..end).contains(&found));
         within().find(|&found| found > line).or_else(|| within().next())
     }

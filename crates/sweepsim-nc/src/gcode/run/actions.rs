@@ -32,6 +32,7 @@ impl Reader {
             Code::SetOffsets | Code::ShiftHere if self.seen.uncertain && here_unknown => {}
             Code::RestoreShift if self.seen.uncertain => {}
             Code::Ignored(note) => self.track.note(note),
+            Code::UnknownCycle(name) => self.track.leave_out_cycle(name)?,
             Code::Length(code) => self.set_length(code, block)?,
             Code::EndCurve => self.end_curve()?,
             Code::CircularPocket { counter_clockwise } => self.circular_pocket(counter_clockwise, block)?,

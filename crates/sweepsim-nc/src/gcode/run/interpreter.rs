@@ -10,7 +10,7 @@ use super::control::variables::Store;
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
-use crate::drive::{Canonical, ProgramPlace, Trace, Track};
+use crate::drive::{Canonical, NARROW, ProgramPlace, Trace, Track};
 use crate::gcode::dialect::Rules;
 use crate::gcode::flow::keywords::{after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
@@ -19,10 +19,10 @@ use crate::gcode::offsets::Offsets;
 use crate::gcode::okuma;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
-use crate::gcode::syntax::{title, words};
+use crate::gcode::syntax::{title, user_task, words};
 use crate::model::names::Format;
-use crate::model::program::{Program, Units};
-use crate::model::read_options::{Controller, ReadOptions};
+use crate::model::program::{Note, Program, Units};
+use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcError, NcProblem};
 
 /// The most problems after the first one.
@@ -74,6 +74,10 @@ pub(crate) struct Seen {
     pub uncertain: bool,
     /// The units of the first move.
     pub units: Option<Units>,
+    /// G90.1 or G91.1.
+    pub centres: bool,
+    /// An arc without a radius, where neither has come.
+    pub odd_arcs: bool,
 }
 
 /// A text that is read, and where it comes from.
@@ -88,6 +92,8 @@ pub(crate) struct Outcome {
     pub trace: Vec<Canonical>,
     /// Whether something was assumed.
     assumed: bool,
+    /// Whether an arc had no radius about a centre that the program does not call relative.
+    odd_arcs: bool,
 }
 
 pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
@@ -95,6 +101,7 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         program: Err(error),
         trace: Vec::new(),
         assumed: false,
+        odd_arcs: false,
     };
     if let Err(error) = options.check() {
         return fail(error);
@@ -103,24 +110,80 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         let problem = NcProblem::value("the size of a program", input.text.len(), "less than 2 GB");
         return fail(NcError::new(problem, None));
     }
-    let read = |wear_alone| read_once(input, options, trace, wear_alone);
-    let outcome = read(false);
-    // Contours that cannot be offset by the tool's radius are those of the tool itself.
-    let assumed = outcome.assumed && outcome.program.is_err();
-    match assumed.then(|| read(true)) {
-        Some(other) if other.program.is_ok() => other,
-        _ => outcome,
+    let as_said = Reading {
+        wear_alone: options.wear_registers,
+        absolute_centres: false,
+    };
+    let mut outcome = read_once(input, options, trace, as_said);
+    // Contours that cannot be offset by the tool's radius are those of the tool itself; arcs that have no radius have absolute centres.
+    let centres = outcome.odd_arcs && !options.strict;
+    let wear = outcome.assumed && !as_said.wear_alone;
+    let others = [(true, false), (false, true), (true, true)].map(|(wear_alone, absolute_centres)| Reading {
+        wear_alone: wear_alone || as_said.wear_alone,
+        absolute_centres,
+    });
+    let mut others = others
+        .into_iter()
+        .filter(|other| outcome.program.is_err() && (wear || other.wear_alone == as_said.wear_alone))
+        .filter(|other| centres || !other.absolute_centres);
+    let found = others.find_map(|other| {
+        let other = read_once(input, options, trace, other);
+        other.program.is_ok().then_some(other)
+    });
+    if let (None, true, Ok(program)) = (&found, wear, &mut outcome.program) {
+        let as_wear = Reading {
+            wear_alone: true,
+            ..as_said
+        };
+        compare_registers(program, || read_once(input, options, false, as_wear).program.ok());
     }
+    found.unwrap_or(outcome)
 }
 
-/// `wear_alone`: registers D that nothing sets are 0.
-fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool) -> Outcome {
+/// Warns where registers D that were taken for the sizes of their tools make these go into their own contours, and as wear they do not.
+fn compare_registers(program: &mut Program, as_wear: impl FnOnce() -> Option<Program>) {
+    let narrow = |program: &Program| {
+        let notes = program.notes.iter().filter(|note| note.message.contains(NARROW));
+        let lines: Vec<usize> = notes.map(|note| note.line).collect();
+        (lines.first().copied(), lines.len())
+    };
+    let (Some(line), count) = narrow(program) else { return };
+    let registers: Vec<&str> = program
+        .assumptions
+        .iter()
+        .filter(|one| one.what.starts_with('D') && one.taken.starts_with("the size of"))
+        .map(|one| one.what.as_str())
+        .collect();
+    if registers.is_empty() || as_wear().is_none_or(|other| narrow(&other).1 >= count) {
+        return;
+    }
+    let (places, registers) = (if count == 1 { "a place" } else { "places" }, registers.join(", "));
+    let message = format!(
+        "as the size of its tool, a register ({registers}) has {places} where the tool does not fit into its own contour, as its wear, 0, fewer or none: \
+         say by --diameters what it is, and compare"
+    );
+    program.notes.push(Note::new(line, message));
+    program.notes.sort_by_key(|note| note.line);
+}
+
+/// How a program is read where controls differ, and it does not say how.
+#[derive(Clone, Copy)]
+struct Reading {
+    /// Registers D that nothing sets are 0.
+    wear_alone: bool,
+    /// I, J and K are coordinates of centres.
+    absolute_centres: bool,
+}
+
+fn read_once(input: &Input, options: &ReadOptions, trace: bool, reading: Reading) -> Outcome {
     let mut reader = Reader::new(input, options);
-    reader.tools.wear_alone = wear_alone;
+    reader.tools.wear_alone = reading.wear_alone;
+    reader.modes.absolute_centres = reading.absolute_centres;
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
     let assumed = reader.track.assumes();
+    let odd_arcs = reader.seen.odd_arcs;
     let program = NcError::all(errors).map_or(Ok(()), Err);
     let program = program.and_then(|()| match options.lenient {
         true => Ok(()),
@@ -137,6 +200,7 @@ fn read_once(input: &Input, options: &ReadOptions, trace: bool, wear_alone: bool
         program,
         trace,
         assumed,
+        odd_arcs,
     }
 }
 
@@ -289,12 +353,20 @@ impl Reader {
             self.track.note("optional blocks (`/`) are skipped");
             return Ok(Step::Next);
         }
-        if let Some(call) = okuma::call(line).filter(|_| self.rules.controller == Some(Controller::Okuma)) {
+        let call = okuma::call(line).filter(|call| self.has_user_task() && call.trim_start().starts_with("OO"));
+        if let Some(call) = call {
             self.track.begin_block();
             return self
                 .call_okuma(call)
                 .map(|()| Step::Next)
                 .map_err(|problem| (problem, 0..line.len()));
+        }
+        if self.has_user_task()
+            && let Some(statement) = user_task::statement(line)
+        {
+            self.seen.begun = true;
+            block.clear();
+            return self.user_task(statement, here, block);
         }
         if let Some(cursor) = after_letter(line) {
             self.seen.begun = true;

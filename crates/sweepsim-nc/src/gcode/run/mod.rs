@@ -5,6 +5,7 @@ pub(crate) mod control;
 pub(crate) mod events;
 pub(crate) mod frames;
 pub(crate) mod interpreter;
+pub(crate) mod letters;
 pub(crate) mod misc;
 pub(crate) mod motion;
 pub(crate) mod perform;

@@ -8,6 +8,7 @@ use crate::gcode::okuma;
 use crate::gcode::syntax::block::{Block, Word};
 use crate::model::program::Units;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// What the G words of a block ask for besides modes.
@@ -145,6 +146,21 @@ impl Reader {
                 }
                 Ok(())
             }
+            (Some(_), None) if plan.machine_coordinates && self.starts_in_rapid() => {
+                self.go_in_machine_coordinates(MotionMode::Rapid, block).map_err(whole)
+            }
+            (Some(_), None) if self.starts_in_rapid() => {
+                let motion = self.modes.before_cycle.unwrap_or_else(|| {
+                    let (what, taken) = (
+                        "the kind of moves before the first motion code",
+                        "G0, as most controls start",
+                    );
+                    self.track.assume(Assumption::new(what, taken, "G0 or G1 before them"));
+                    MotionMode::Rapid
+                });
+                self.modes.motion = Some(motion);
+                self.motion(block, plan)
+            }
             (Some(word), None) => {
                 let problem = NcProblem::syntax(format!(
                     "{} without a motion code: expected G0, G1, G2 or G3 here or before",
@@ -178,6 +194,11 @@ impl Reader {
         }
     }
 
+    /// Whether moves without a motion code are those that the control starts with: LinuxCNC has none, and strict readers.
+    pub(crate) fn starts_in_rapid(&self) -> bool {
+        !self.track.strict() && self.rules.controller != Some(Controller::LinuxCnc)
+    }
+
     /// The G words: modes at once, the rest as a plan.
     fn modal(&mut self, block: &Block) -> Result<Plan, Located> {
         let mut plan = Plan::default();
@@ -206,6 +227,10 @@ impl Reader {
                         && self.modes.motion != Some(motion)
                     {
                         self.begin_cycle();
+                        let plain = |motion: &MotionMode| {
+                            matches!(motion, MotionMode::Rapid | MotionMode::Feed | MotionMode::Arc { .. })
+                        };
+                        self.modes.before_cycle = self.modes.motion.filter(plain).or(self.modes.before_cycle);
                     }
                     self.modes.motion = Some(motion);
                 }
@@ -234,7 +259,10 @@ impl Reader {
                     }
                 }
                 Code::Absolute(absolute) => self.modes.absolute = absolute,
-                Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
+                Code::AbsoluteCentres(absolute) => {
+                    self.modes.absolute_centres = absolute;
+                    self.seen.centres = true;
+                }
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::ChangeTool => plan.changes_tool = true,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
@@ -276,6 +304,7 @@ impl Reader {
                 Code::Dwell => plan.dwell = true,
                 Code::MacroCall => plan.macro_call = Some(word),
                 code @ (Code::Ignored(_)
+                | Code::UnknownCycle(_)
                 | Code::Home { .. }
                 | Code::SetHome { .. }
                 | Code::Probe
@@ -317,66 +346,6 @@ impl Reader {
             }
         }
         Ok(plan)
-    }
-
-    /// Each letter at most once, and none that could move the tool in an unknown way.
-    fn check_letters(&mut self, block: &Block) -> Result<(), Located> {
-        if let Some(word) = block.twice {
-            let problem = NcProblem::syntax(format!("a second {} in one block: expected one", word.letter));
-            return Err((problem, word.span()));
-        }
-        for word in block.words() {
-            let fail = |problem| Err((problem, word.span()));
-            match word.letter {
-                'G' | 'M' | 'N' | 'A' | 'B' | 'C' | 'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'S' | 'T' | 'P'
-                | 'Q' | 'L' | 'H' | 'D' => {}
-                'U' | 'V' | 'W' => {
-                    return fail(NcProblem::unsupported(
-                        format!("the axis {} is", word.letter),
-                        "expected X Y Z A B C",
-                    ));
-                }
-                'E' if block.words().iter().any(|w| {
-                    (w.letter == 'M' && (62.0..=68.0).contains(&w.value)) || (w.letter == 'G' && w.value == 187.0)
-                }) => {}
-                'E' => {
-                    return fail(NcProblem::unsupported(
-                        "E words are",
-                        "it could be an exponent or an extruder; expected numbers without exponent",
-                    ));
-                }
-                'O' => {
-                    return fail(NcProblem::syntax(
-                        "O within a block: expected it at the beginning of a line",
-                    ));
-                }
-                letter => self.track.note(format!("{letter} words are not understood: ignored")),
-            }
-            if word.whole && self.rules.fanuc() && "XYZIJKR".contains(word.letter) && word.value != 0.0 {
-                self.track.note(
-                    "lengths without a decimal point are taken as whole units; without its calculator mode, the control takes them in its smallest increment",
-                );
-            }
-        }
-        self.check_spare_words(block)
-    }
-
-    /// LinuxCNC rejects words that no code of their block uses.
-    fn check_spare_words(&self, block: &Block) -> Result<(), Located> {
-        if !self.rules.strict || self.rules.controller != Some(Controller::LinuxCnc) || !block.has('R') {
-            return Ok(());
-        }
-        let is = |letter: char, value: f64| block.words().iter().any(|w| w.letter == letter && w.value == value);
-        let fail = |text: &str| Err((NcProblem::syntax(text.to_owned()), block.span('R')));
-        if is('G', 64.0) && is('M', 19.0) {
-            return fail("R belongs to both G64 and M19 here: expected them in blocks of their own");
-        }
-        let motion_ends = is('G', 61.0) || is('G', 80.0);
-        let moves = block.first("XYZABC").is_some();
-        if motion_ends && !moves && !is('M', 19.0) && !is('G', 10.0) {
-            return fail("no code of this block uses R: expected an arc or a cycle");
-        }
-        Ok(())
     }
 }
 

@@ -88,7 +88,7 @@ impl Reader {
     pub(crate) fn call_okuma(&mut self, call: &str) -> Result<(), NcProblem> {
         let Some(angles) = okuma::turned_offset(call) else {
             let name = call.split_whitespace().next().unwrap_or("").to_owned();
-            if self.track.strict() || !name.starts_with("OO") {
+            if self.track.strict() {
                 let problem = NcProblem::syntax(format!(
                     "the subprogram {name} is missing: expected the moves written out"
                 ));

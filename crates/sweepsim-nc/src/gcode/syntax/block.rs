@@ -51,7 +51,7 @@ pub(crate) struct Block {
     words: Vec<Word>,
     /// For each letter, the index of its first word, plus 1.
     first: [u8; 26],
-    /// The second word of a letter other than G and M.
+    /// The second word of a letter other than G and M, with another value.
     pub twice: Option<Word>,
     /// The values of the words of variables that have none: Fanuc ignores such words.
     pub assignments: Vec<(Target, Option<f64>)>,
@@ -85,7 +85,10 @@ impl Block {
         let first = &mut self.first[slot(word.letter)];
         if *first == 0 {
             *first = self.words.len() as u8 + 1;
-        } else if !matches!(word.letter, 'G' | 'M') && self.twice.is_none() {
+        } else if !matches!(word.letter, 'G' | 'M')
+            && self.twice.is_none()
+            && self.words[usize::from(*first) - 1].value != word.value
+        {
             self.twice = Some(word);
         }
         self.words.push(word);

@@ -5,4 +5,5 @@ pub(crate) mod cursor;
 pub(crate) mod expression;
 pub(crate) mod functions;
 pub(crate) mod title;
+pub(crate) mod user_task;
 pub(crate) mod words;

@@ -6,11 +6,16 @@ use super::{options, read};
 
 #[test]
 fn what_cannot_be_compensated_is_an_error() {
-    let siemens_error = |text: &str| siemens::read(text, &options(2.0)).unwrap_err().to_string();
+    let strict = || {
+        let mut options = options(2.0);
+        options.strict = true;
+        options
+    };
+    let siemens_error = |text: &str| siemens::read(text, &strict()).unwrap_err().to_string();
     let mismatch =
         |found: String, expected: &str| (!found.starts_with(expected)).then(|| format!("{expected}\n    but {found}"));
     let mut wrong = Vec::new();
-    let klartext_error = |text: &str| heidenhain::read(text, &options(2.0)).unwrap_err().to_string();
+    let klartext_error = |text: &str| heidenhain::read(text, &strict()).unwrap_err().to_string();
     let start = "T1 D1 F9\nG0 X0 Y0 Z0\n";
     for (text, expected) in [
         (

@@ -12,7 +12,7 @@ const BAD: [(&str, Option<Controller>, &str); 52] = [
     (
         "G0 X0 Y0 Z0\nF9 G150 P1000",
         None,
-        "2:4: G150: pockets by a subprogram (G150) are not supported yet: the path of the tool would be unknown; expected G0, G1, G2 or G3",
+        "2:4: G150 is not supported yet: its moves are not known; expected them written out",
     ),
     (
         "G0 X0 Y0 Z0\nG13 D0 F9",

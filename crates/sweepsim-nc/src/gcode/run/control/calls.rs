@@ -283,7 +283,16 @@ impl Reader {
         )
     }
 
-    fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
+    /// A level with named variables of its own.
+    pub(super) fn level_with_names(&mut self, kind: CallKind) -> CallLevel {
+        CallLevel {
+            kind,
+            named: Some(std::mem::take(&mut self.variables.named)),
+            ..CallLevel::default()
+        }
+    }
+
+    pub(super) fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
         if self.calls.levels.len() > DEEPEST {
             self.leave_level(level);
             return Err(NcProblem::syntax(format!(

@@ -10,7 +10,7 @@ use super::calls::SourceLine;
 use crate::gcode::flow::keywords::{Keyword, Label};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::syntax::block::Block;
-use crate::model::read_options::ReadOptions;
+use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 use crate::text::lines;
@@ -60,10 +60,15 @@ impl Reader {
         None
     }
 
-    /// A call of a program that is missing: those from O9000 on are of the machine's builder, or of its probe.
+    /// A call of a program that is missing, which LinuxCNC does not have: those from O9000 on are of the machine's builder, or of its probe.
     pub(super) fn without_macro(&mut self, number: u32, block: &Block, problem: NcProblem) -> Result<Step, NcProblem> {
-        if self.track.strict() || !(9000..=9999).contains(&number) {
+        if self.track.strict() || self.rules.controller == Some(Controller::LinuxCnc) {
             return Err(problem);
+        }
+        if !(9000..=9999).contains(&number) {
+            self.track
+                .leave_out_program(&format!("O{number}"), &format!("O{number}"))?;
+            return Ok(Step::Next);
         }
         // Renishaw's begin with 98: O9810 is a positioning move, the others end where they began.
         let probes = (9800..=9899).contains(&number);
@@ -121,7 +126,7 @@ impl Reader {
         let names = match label {
             // No way out of the folder.
             Label::Name(name) if name.contains(['/', '\\', '\0']) || name.starts_with('.') => return Ok(()),
-            Label::Name(name) => vec![name.clone()],
+            Label::Name(name) => vec![name.clone(), format!("O{name}")],
             Label::Number(number) => vec![
                 format!("{number}"),
                 format!("O{number:04}"),
@@ -131,7 +136,9 @@ impl Reader {
                 format!("{number:04}"),
             ],
         };
-        let extensions = [".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ""];
+        let extensions = [
+            ".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ".SUB", ".SSB", ".MIN", ".LIB", "",
+        ];
         for folder in &self.texts.folders {
             for (name, extension) in names.iter().flat_map(|name| extensions.iter().map(move |e| (name, e))) {
                 let path = folder.join(format!("{name}{extension}"));

@@ -22,8 +22,8 @@ pub(crate) struct Store {
     /// Named variables of this call: `#<name>`.
     pub named: BTreeMap<String, f64>,
     numbered: BTreeMap<u32, f64>,
-    /// Those of this block that only the machine or the operator knows.
-    asked: RefCell<Vec<u32>>,
+    /// Those of this block that only the machine or the operator knows, and what they are taken for.
+    asked: RefCell<Vec<(String, &'static str)>>,
     /// Those that begin with `_`: `#<_name>`.
     global: BTreeMap<String, f64>,
 }
@@ -252,17 +252,17 @@ impl Reader {
         let mut asked = std::mem::take(&mut *self.variables.asked.borrow_mut());
         asked.dedup();
         let upper = line.to_ascii_uppercase();
-        let branches = upper.contains("IF") && upper.contains("GOTO");
-        for index in asked {
-            let value = if index < 1000 { "empty" } else { "0" };
+        let branches =
+            upper.contains("IF") && (upper.contains("GOTO") || upper.contains("] N") || upper.contains("]N"));
+        for (name, value) in asked {
             let taken = match (branches, jumps) {
                 (true, true) => format!("{value}, by which IF jumps; with another value it may go on"),
                 (true, false) => format!("{value}, by which IF goes on; with another value it may jump"),
                 _ => value.to_owned(),
             };
-            let settle = format!("#{index}=… in the program, or the control's variables");
+            let settle = format!("{name}=… in the program, or the control's variables");
             self.track.assume(Assumption::new(
-                format!("#{index}, which the program does not set"),
+                format!("{name}, which the program does not set"),
                 taken,
                 settle,
             ));
@@ -287,7 +287,8 @@ impl Variables for Reader {
             && index >= 500
             && matches!(self.rules.controller, None | Some(Controller::Fanuc | Controller::Haas))
         {
-            self.variables.asked.borrow_mut().push(index);
+            let taken = if index < 1000 { "empty" } else { "0" };
+            self.variables.asked.borrow_mut().push((format!("#{index}"), taken));
             return Ok((index >= 1000).then_some(0.0));
         }
         match self.rules.controller {
@@ -317,6 +318,15 @@ impl Variables for Reader {
         };
         match names.get(name) {
             Some(value) => Ok(Some(*value)),
+            None if name == "empty" => Ok(None),
+            // Of its program they are empty; common ones and the system's only the control knows.
+            None if self.has_user_task() && !self.track.strict() => {
+                if let Some(common) = name.strip_prefix('_') {
+                    let mut asked = self.variables.asked.borrow_mut();
+                    asked.push((common.to_ascii_uppercase(), "empty"));
+                }
+                Ok(None)
+            }
             None => Err(NcProblem::syntax(format!(
                 "#<{name}> has no value here: expected `#<{name}> = …` before"
             ))),

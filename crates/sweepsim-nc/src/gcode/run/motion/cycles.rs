@@ -10,6 +10,7 @@ use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::model::event::{EventKind, Spindle};
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// How far from the last depth G83 returns in rapid, and how far G73 retracts, in mm: LinuxCNC's 0.010 inch. Fanuc and Haas keep it in a
@@ -75,8 +76,19 @@ impl Reader {
             sticky.shift = Some([length('I').unwrap_or(0.0), length('J').unwrap_or(0.0)]);
         }
         let sticky = *sticky;
-        let (Some(plane), Some(bottom)) = (sticky.plane, sticky.bottom) else {
-            let missing = if sticky.plane.is_none() { 'R' } else { letter };
+        let assumes_plane = sticky.plane.is_none() && self.starts_in_rapid() && !self.seen.uncertain;
+        let height = self.track.xyz[w].filter(|_| assumes_plane);
+        if height.is_some() {
+            let what = format!("the plane R of {name}");
+            let taken = "where the tool is: the cycle does not say it";
+            self.track
+                .assume(Assumption::new(what, taken, format!("R with {name}")));
+        }
+        let plane = sticky
+            .plane
+            .or(height.map(|at| if self.modes.absolute { at } else { 0.0 }));
+        let (Some(plane), Some(bottom)) = (plane, sticky.bottom) else {
+            let missing = if plane.is_none() { 'R' } else { letter };
             return Err(NcProblem::syntax(format!(
                 "{name} without {missing}: expected R, the plane to drill from, and {letter}, the bottom"
             )));

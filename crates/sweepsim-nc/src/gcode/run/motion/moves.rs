@@ -8,6 +8,7 @@ use crate::gcode::syntax::block::{Block, Word};
 use crate::gcode::syntax::expression::Variables;
 use crate::machines::WorkFrame;
 use crate::model::program::FeedMode;
+use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 impl Reader {
@@ -98,8 +99,13 @@ impl Reader {
                 self.offsets.know(k)?;
             }
             let relative = !self.modes.absolute || matches!(motion, MotionMode::Arc { .. });
+            // A rapid needs no more than the axes that it names.
+            let needed = |k: usize| match cuts {
+                true => words[k].is_none() || relative,
+                false => words[k].is_some(),
+            };
             // Nothing is assumed about a position that an earlier problem has made unknown.
-            if self.seen.uncertain || !self.track.complete(|k| words[k].is_none() || relative) {
+            if self.seen.uncertain || !self.track.complete(needed) {
                 for k in 0..3 {
                     if let Some(word) = words[k] {
                         self.track.xyz[k] = self.modes.absolute.then_some(word);
@@ -255,7 +261,14 @@ impl Reader {
                     }
                     (false, cu, cv) => [start[u] + cu.unwrap_or(0.0), start[v] + cv.unwrap_or(0.0)],
                 };
+                if self.modes.absolute_centres && !self.seen.centres {
+                    let what = "the centres of arcs (I, J, K)";
+                    let taken = "absolute coordinates: taken from the start of each arc, some have no radius";
+                    self.track
+                        .assume(Assumption::new(what, taken, "G90.1 or G91.1 in the program"));
+                }
                 let arc = CircularArc::about(ends, plane, centre, counter_clockwise, turns);
+                self.seen.odd_arcs |= arc.is_err() && !self.seen.centres;
                 match (arc, words[w].filter(|offset| *offset != 0.0)) {
                     (Ok(arc), Some(height)) => {
                         let absolute = self.modes.absolute_centres.then_some(height);

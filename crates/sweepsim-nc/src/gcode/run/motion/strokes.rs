@@ -1,6 +1,6 @@
 //! Programmed moves, and the switch of cutter compensation.
 
-use crate::drive::{CompensationSettings, Corners, Stroke};
+use crate::drive::{CompensationSettings, Corners, DiameterAsked, Stroke};
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::run::tools::ToolRow;
 use crate::gcode::syntax::block::Block;
@@ -25,8 +25,14 @@ impl Reader {
         match row.map(|row| row.diameter).or(self.tools.diameter(number)) {
             Some(diameter) => Ok(diameter),
             None => {
-                let (register, wear) = (format!("D{number}"), self.tools.wear_alone);
-                let assumed = self.track.assume_diameter(&register, &register, self.unit(), wear);
+                let register = format!("D{number}");
+                let assumed = self.track.assume_diameter(&DiameterAsked {
+                    register: &register,
+                    option: &register,
+                    unit: self.unit(),
+                    wear: self.tools.wear_alone,
+                    unknown: 0.0,
+                });
                 assumed.ok_or_else(|| NcProblem::syntax(format!(
                     "the diameter D{number} for cutter compensation is not known: expected --diameters D{number}=… (in a job: `diameters`), a tool table, or G41.1 D with the diameter"
                 )))
@@ -41,6 +47,9 @@ impl Reader {
                 "a change of cutter compensation without G40 is",
                 "expected G40 and a move between them",
             ));
+        }
+        if self.seen.uncertain && self.track.known().is_none() {
+            return Ok(());
         }
         if self.modes.scaling.is_some() {
             return Err(NcProblem::unsupported(

@@ -1,0 +1,238 @@
+//! Cycles on contours: `CYCLE62` names them, `CYCLE63` mills the pocket within the first one beside the others, `CYCLE72` goes along one.
+//!
+//! Source: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Manual Job Planning*, as posts write it too.
+
+use super::arguments::Arguments;
+use super::interpreter::{Level, Reader};
+use super::language::structures::Search;
+use crate::controls::run::Running;
+use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
+use crate::text::error::{Located, NcProblem};
+
+/// The most blocks of a contour.
+const MOST_BLOCKS: usize = 100_000;
+
+/// The cycles on contours. `CYCLE64` drills where `CYCLE63` plunges: its moves are not known.
+pub(super) const CONTOURS: [&str; 3] = ["CYCLE62", "CYCLE63", "CYCLE72"];
+
+/// The contours that `CYCLE62` has named.
+#[derive(Default)]
+pub(super) struct Contours {
+    named: Vec<Named>,
+    milled: bool,
+}
+
+/// Where a contour is: in a subprogram, between labels, or both.
+#[derive(Clone)]
+struct Named {
+    program: Option<String>,
+    labels: Option<[String; 2]>,
+}
+
+impl Named {
+    /// `CYCLE62(KNAME, TYPE, LAB1, LAB2)`: a subprogram (0), a contour between `E_LAB_A_` and `E_LAB_E_` (1), between labels (2), of a subprogram (3).
+    fn of(arguments: &Arguments) -> Option<Self> {
+        let name = arguments.text(0);
+        let labels = || Some([arguments.text(2)?, arguments.text(3)?]);
+        Some(match arguments.get(1).unwrap_or(0.0) {
+            0.0 => Self {
+                program: Some(name?),
+                labels: None,
+            },
+            1.0 => {
+                let name = name?;
+                Self {
+                    program: None,
+                    labels: Some(["A", "E"].map(|end| format!("E_LAB_{end}_{name}"))),
+                }
+            }
+            2.0 => Self {
+                program: None,
+                labels: Some(labels()?),
+            },
+            _ => Self {
+                program: Some(name?),
+                labels: Some(labels()?),
+            },
+        })
+    }
+}
+
+impl Reader<'_> {
+    pub(super) fn contour_cycle(&mut self, arguments: &Arguments) -> Result<(), NcProblem> {
+        let name = arguments.name;
+        if name == "CYCLE62" {
+            if std::mem::take(&mut self.contours.milled) || arguments.values.iter().all(Option::is_none) {
+                self.contours.named.clear();
+            }
+            self.contours.named.extend(Named::of(arguments));
+            return Ok(());
+        }
+        self.contours.milled = true;
+        // CYCLE72 may name its contour itself: a subprogram, or labels.
+        let named = match arguments.text(0).filter(|_| name == "CYCLE72") {
+            Some(text) => {
+                let labels = text.split_once(':').map(|(from, to)| [from.to_owned(), to.to_owned()]);
+                vec![Named {
+                    program: Some(text).filter(|_| labels.is_none()),
+                    labels,
+                }]
+            }
+            None => self.contours.named.clone(),
+        };
+        let courses: Result<Vec<Course>, Located> = named.iter().map(|named| self.course(named)).collect();
+        let courses = match courses {
+            Ok(courses) if !courses.is_empty() => courses,
+            // What they say is not understood, or there are none.
+            _ => return self.track.leave_out_cycle(name),
+        };
+        let tool = self.cutter_radius(UNKNOWN_TOOL)?;
+        let contours = match name {
+            "CYCLE63" => area(arguments, courses, tool)?,
+            _ => along(arguments, courses, tool)?,
+        };
+        let Some(contours) = contours else {
+            return self.track.leave_out_cycle(name);
+        };
+        let cycle = Cycle::Shape(name.to_owned(), Box::new(Shape::Contours(contours)));
+        self.track.cycle_here(&cycle, self.modes.plane, self.uncertain)
+    }
+
+    /// The course of a contour, whose blocks run for it.
+    fn course(&mut self, named: &Named) -> Result<Course, Located> {
+        let fail = |problem| (problem, 0..0);
+        let here = self.stack.last().map_or((0, 0), |level| (level.routine, level.next));
+        let (routine, from) = match &named.program {
+            Some(program) if self.knows(program) => (self.names[program], 0),
+            Some(program) => {
+                let problem = NcProblem::syntax(format!("there is no contour {program}"));
+                return Err(fail(problem));
+            }
+            None => here,
+        };
+        let (next, end) = match &named.labels {
+            None => (0, usize::MAX),
+            Some([first, last]) => {
+                let start = self.routines[routine].find(first, from, Search::Anywhere)?;
+                (start, self.routines[routine].find(last, start, Search::Forward)?)
+            }
+        };
+        self.track.record_moves().map_err(fail)?;
+        let depth = self.stack.len();
+        let motion = self.modes.motion;
+        let mut level = Level::new(routine, std::collections::BTreeMap::new(), 1);
+        level.next = next;
+        self.stack.push(level);
+        let mut ran = Ok(());
+        for _ in 0..MOST_BLOCKS {
+            let ended = self.stack.get(depth).is_none_or(|level| level.next >= end) && self.stack.len() <= depth + 1;
+            if ended || self.stack.len() <= depth {
+                break;
+            }
+            let Some(at) = self.advance() else { break };
+            ran = self.run(at);
+            if ran.is_err() {
+                break;
+            }
+        }
+        self.stack.truncate(depth);
+        (self.modes.motion, self.ended) = (motion, false);
+        let course = self.track.recorded(self.modes.plane);
+        ran?;
+        course.map_err(fail)
+    }
+}
+
+fn levels(end: f64, start: f64, surface: f64, bottom: f64, tool: f64) -> Pocket {
+    Pocket {
+        half: [0.0; 2],
+        corner: 0.0,
+        raw: None,
+        aside: [0.0; 2],
+        turn: 0.0,
+        start,
+        surface,
+        bottom,
+        end,
+        infeed: 0.0,
+        left: [0.0; 2],
+        rim_alone: false,
+        tool,
+        step: 0.8 * 2.0 * tool,
+        feed: None,
+        plunge: None,
+        clockwise: false,
+    }
+}
+
+/// `CYCLE63(PRG, VARI, RP, Z0, SC, Z1, F, FZ, DXY, DZ, UXY, UZ, CDIR, …)`: the last digit of `VARI` is 1 for roughing, 3 for the floor, 4 for the edge.
+fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Option<ContourCycle>, NcProblem> {
+    let kind = arguments.get(1).unwrap_or(1.0) % 10.0;
+    let (end, surface) = (arguments.need(2, "RP")?, arguments.need(3, "Z0")?);
+    // Whether it is a depth or a level is in a later parameter that posts fill in differently: a level above the surface is none.
+    let bottom = arguments.need(5, "Z1")?;
+    let bottom = if bottom < surface {
+        bottom
+    } else {
+        surface - bottom.abs()
+    };
+    let islands = courses.split_off(1);
+    let all_closed = courses.iter().chain(&islands).all(Course::is_closed);
+    if !(all_closed && matches!(kind, 1.0 | 3.0 | 4.0) && bottom < surface) {
+        return Ok(None);
+    }
+    let (step, infeed) = (arguments.length(8), arguments.length(9).abs());
+    let [side, floor] = [arguments.length(10), arguments.length(11)];
+    let start = surface + arguments.length(4).abs();
+    let levels = levels(end.max(start), start, surface, bottom, tool);
+    Ok(Some(ContourCycle {
+        work: Work::Area {
+            pockets: courses,
+            islands,
+            inside: kind != 4.0,
+            rim: kind != 3.0,
+        },
+        pocket: Pocket {
+            infeed: if kind == 1.0 { infeed } else { 0.0 },
+            left: match kind {
+                1.0 => [side, floor],
+                3.0 => [side, 0.0],
+                _ => [0.0; 2],
+            },
+            step: if step > 0.0 { step } else { levels.step },
+            feed: arguments.feed(6),
+            plunge: arguments.feed(7),
+            ..levels
+        },
+    }))
+}
+
+/// `CYCLE72(KNAME, RTP, RFP, SDIS, DP, MID, FAL, FALD, FFP1, FFD, VARI, RL, AS1, LP1, FF3, AS2, LP2, …)`: on the contour (`RL` 40), left (41) or right of it (42).
+fn along(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Option<ContourCycle>, NcProblem> {
+    let [end, surface, bottom] = [(1, "RTP"), (2, "RFP"), (4, "DP")].map(|(k, name)| arguments.need(k, name));
+    let (end, surface, bottom) = (end?, surface?, bottom?);
+    let finishes = arguments.get(10).is_some_and(|kind| kind % 10.0 == 2.0);
+    let side = match arguments.get(11) {
+        Some(41.0) => Some(true),
+        Some(42.0) => Some(false),
+        _ => None,
+    };
+    if !(bottom < surface) {
+        return Ok(None);
+    }
+    let start = surface + arguments.length(3).abs();
+    let left = match finishes {
+        true => [0.0; 2],
+        false => [arguments.length(6), arguments.length(7)],
+    };
+    Ok(Some(ContourCycle {
+        work: Work::Along(courses.swap_remove(0), side),
+        pocket: Pocket {
+            infeed: arguments.length(5).abs(),
+            left,
+            feed: arguments.feed(8),
+            plunge: arguments.feed(9),
+            ..levels(end.max(start), start, surface, bottom, tool)
+        },
+    }))
+}
