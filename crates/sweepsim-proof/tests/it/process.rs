@@ -363,6 +363,6 @@ fn random_programs_touch_what_samples_say() {
 
 #[test]
 #[ignore = "takes minutes"]
-fn four_hundred_random_programs_touch_what_samples_say() {
-    random_scenes(400, 100);
+fn two_hundred_random_programs_touch_what_samples_say() {
+    random_scenes(200, 50);
 }
