@@ -217,7 +217,7 @@ fn inspect_tells_what_is_there() {
         text(&output.stdout)
     );
     // By its content, whatever its name; and all that is wrong with it.
-    fs::write(workdir.path("O1000"), "G0 X0 Y0 Z5\nM98 P4\nM98 P5\n").unwrap();
+    fs::write(workdir.path("O1000"), "G0 X0 Y0 Z5\nG60 X1\nG200 X1\n").unwrap();
     let output = inspect(&workdir, "O1000");
     assert_eq!(output.status.code(), Some(2));
     let said = text(&output.stderr);
@@ -225,7 +225,15 @@ fn inspect_tells_what_is_there() {
         assert!(said.contains(place), "{said}");
     }
     assert!(
-        said.contains("the subprogram O4 is missing") && said.contains("the subprogram O5 is missing"),
+        said.contains("G60: single-direction positioning is") && said.contains("G200 is not supported"),
+        "{said}"
+    );
+    // Programs that are missing are said, and what is there is read.
+    fs::write(workdir.path("O1000"), "G0 X0 Y0 Z5\nM98 P4\nG0 X1 Y1 Z5\nG1 Z1 F100\n").unwrap();
+    let output = inspect(&workdir, "O1000");
+    let said = text(&output.stdout);
+    assert!(
+        output.status.success() && said.contains("assumed  line 2: the moves of O4, a program that is missing"),
         "{said}"
     );
 }

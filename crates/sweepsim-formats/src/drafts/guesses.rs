@@ -233,8 +233,9 @@ impl Drafter<'_> {
     }
 }
 
-/// The top of a stock that is cut above z = 0: a level above the highest cut to the side, as far apart as the next one below it, but no higher than where the tool begins to
-/// feed down to it. A feed move to the side cuts where the tool has come down at feed; after a way up or a rapid it only leads from one cut to the next.
+/// The top of a stock that is cut above z = 0: a level above the highest cut to the side, as far apart as the next
+/// one below it, but no higher than where the tool begins to feed down to it. A feed move to the side cuts where the
+/// tool has come down at feed; after a way up or a rapid it only leads from one cut to the next.
 fn faced_from(poses: impl Iterator<Item = ProgramPose>) -> Option<f64> {
     const SAME: f64 = 1e-6;
     // The highest level with where the tool has begun to come down to it, and the next one.

@@ -4,13 +4,62 @@ use nalgebra::Vector3;
 
 use super::circular_arc::{Arc, CircularArc};
 use super::contour::{
-    ArcPlane, Bend, Compensation, CompensationSettings, Contour, Corner, Item, Outcome, Stroke, blend,
+    ArcPlane, Before, Bend, Compensation, CompensationSettings, Contour, Corner, Item, Outcome, Recording, Stroke,
+    blend,
 };
 use super::track::Track;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
 impl Track {
+    /// From here on, moves are kept and not made.
+    pub fn record_moves(&mut self) -> Result<(), NcProblem> {
+        self.refuse_contour("a cycle on contours")?;
+        let before = Before {
+            xyz: self.xyz,
+            feed: self.feed,
+            place: self.place,
+            direction: self.contour.direction,
+        };
+        self.xyz = self.xyz.map(|x| Some(x.unwrap_or(0.0)));
+        self.recording = Some(Recording {
+            before,
+            ..Recording::default()
+        });
+        Ok(())
+    }
+
+    /// The moves since then; the tool is where it was.
+    pub fn recorded(&mut self) -> Result<Recording, NcProblem> {
+        let settled = self.refuse_contour("a cycle on contours");
+        let recording = self.recording.take().unwrap_or_default();
+        let before = recording.before;
+        (self.xyz, self.feed, self.place) = (before.xyz, before.feed, before.place);
+        self.contour.direction = before.direction;
+        settled.map(|()| recording)
+    }
+
+    /// Whether a move of the tool is kept instead of being made.
+    pub(in crate::drive) fn keeps(&mut self, stroke: &Stroke) -> bool {
+        let from = self.xyz.map(|x| x.unwrap_or(0.0));
+        let Some(recording) = &mut self.recording else {
+            return false;
+        };
+        recording.strokes.push((from, *stroke));
+        self.arrive(stroke.end, stroke.abc);
+        true
+    }
+
+    /// Whether compensation is only noted.
+    pub(in crate::drive) fn keeps_side(&mut self, left: bool) -> bool {
+        let recording = self.recording.as_mut();
+        recording.map(|recording| recording.left = Some(left)).is_some()
+    }
+
+    pub fn is_recording(&self) -> bool {
+        self.recording.is_some()
+    }
+
     /// Whether the next move starts beside its programmed start: after the end of cutter compensation.
     pub fn starts_beside(&self) -> bool {
         self.contour.actual.is_some() && !self.compensates()

@@ -8,7 +8,6 @@ mod cycles;
 mod driver;
 mod moves;
 mod rapids;
-mod recording;
 mod said;
 mod trace;
 mod track;

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
-use super::contour::{Contour, ProgramPlace};
+use super::contour::{Contour, ProgramPlace, Recording};
 use super::driver::{Coordinates, Driver, Sense};
-use super::recording::Recording;
 use super::trace::Trace;
 use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};

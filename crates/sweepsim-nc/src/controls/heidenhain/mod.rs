@@ -9,21 +9,17 @@
 //! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Other cycles are errors
 //! with their position.
 
-mod approach;
-mod arcs;
 mod calls;
-mod compensation;
-mod contour_cycles;
+mod contours;
 mod cycles;
 mod frames;
-mod holes;
 mod interpreter;
 mod line;
 mod moves;
 mod planes;
 mod routine;
 mod settings;
-mod shapes;
+mod state;
 mod values;
 
 pub use super::run::Library;

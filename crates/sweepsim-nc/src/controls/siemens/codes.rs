@@ -2,13 +2,9 @@
 
 use std::ops::Range;
 
-use super::arguments::Arguments;
-use super::contour_cycles::CONTOURS;
-use super::cycles::{HOLES, hole_cycle, thread};
+use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, hole_cycle, thread, workpiece};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
-use super::milling::{MILLING, workpiece};
-use super::patterns::PATTERNS;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};

@@ -4,11 +4,10 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use super::contour_cycles::Contours;
 use super::language::expression::{self, Expression, Value};
 use super::language::routine::{Routine, parts};
 use super::language::structures::{Item, Search, Statement};
-use super::state::{Frames, Modes};
+use super::state::{Contours, Frames, Modes};
 use crate::controls::run::{self, BlockIndex, DEEPEST_CALL, Library, Running};
 use crate::drive::{Sense, Track};
 use crate::model::names::Format;
@@ -54,7 +53,6 @@ pub(super) struct Reader<'a> {
     pub ended: bool,
     /// Variables that the block has asked for, and nothing sets.
     pub(super) asked: RefCell<BTreeSet<String>>,
-    /// The contours of `CYCLE62`, and whether a cycle has milled them: the next one then begins anew.
     pub(super) contours: Contours,
     /// A call to make after the block.
     pub pending: Option<(String, Vec<Value>, usize)>,

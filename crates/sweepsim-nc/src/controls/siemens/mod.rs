@@ -11,17 +11,13 @@
 //! Splines, synchronous actions and other cycles are errors with their position.
 
 mod arcs;
-mod arguments;
 mod codes;
-mod contour_cycles;
 mod contours;
 mod cycles;
 mod frames;
 mod interpreter;
 mod language;
-mod milling;
 mod moves;
-mod patterns;
 mod state;
 mod variables;
 mod words;

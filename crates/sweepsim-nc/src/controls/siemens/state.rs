@@ -160,3 +160,18 @@ impl Operation {
         Some(Self { kind, additive })
     }
 }
+
+/// The contours that `CYCLE62` has named.
+#[derive(Default)]
+pub(super) struct Contours {
+    pub named: Vec<NamedContour>,
+    /// Whether a cycle has milled them: the next one to be named begins anew.
+    pub milled: bool,
+}
+
+/// Where a contour is: in a subprogram, between labels, or both.
+#[derive(Clone)]
+pub(super) struct NamedContour {
+    pub program: Option<String>,
+    pub labels: Option<[String; 2]>,
+}

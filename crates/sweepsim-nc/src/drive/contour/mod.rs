@@ -6,9 +6,11 @@ mod corner;
 mod joins;
 mod narrow;
 mod queue;
+mod recording;
 mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
 pub(crate) use compensation::{Compensation, NARROW};
 pub(crate) use queue::Contour;
+pub(crate) use recording::{Before, Recording};
 pub(crate) use stroke::{ArcPlane, Bend, CompensationSettings, Corners, Item, ProgramPlace, Stroke};

@@ -9,8 +9,8 @@ use super::control::lookup::Texts;
 use super::control::variables::Store;
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
-use super::tools::ToolTable;
-use crate::drive::{Canonical, NARROW, ProgramPlace, Trace, Track};
+use super::tools::{ToolTable, compare_registers};
+use crate::drive::{Canonical, ProgramPlace, Trace, Track};
 use crate::gcode::dialect::Rules;
 use crate::gcode::flow::keywords::{after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
@@ -21,7 +21,7 @@ use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, user_task, words};
 use crate::model::names::Format;
-use crate::model::program::{Note, Program, Units};
+use crate::model::program::{Program, Units};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{Located, NcError, NcProblem};
 
@@ -29,6 +29,9 @@ use crate::text::error::{Located, NcError, NcProblem};
 const MOST_FURTHER: usize = 100;
 /// How many blocks are still executed after a problem, to find others.
 const AFTER_PROBLEM: u64 = 200_000;
+
+/// How many blocks are executed where lines may be those of a user task.
+const MOST_USER_TASK: u64 = 2_000_000;
 
 /// What comes after a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,32 +143,6 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
     found.unwrap_or(outcome)
 }
 
-/// Warns where registers D that were taken for the sizes of their tools make these go into their own contours, and as wear they do not.
-fn compare_registers(program: &mut Program, as_wear: impl FnOnce() -> Option<Program>) {
-    let narrow = |program: &Program| {
-        let notes = program.notes.iter().filter(|note| note.message.contains(NARROW));
-        let lines: Vec<usize> = notes.map(|note| note.line).collect();
-        (lines.first().copied(), lines.len())
-    };
-    let (Some(line), count) = narrow(program) else { return };
-    let registers: Vec<&str> = program
-        .assumptions
-        .iter()
-        .filter(|one| one.what.starts_with('D') && one.taken.starts_with("the size of"))
-        .map(|one| one.what.as_str())
-        .collect();
-    if registers.is_empty() || as_wear().is_none_or(|other| narrow(&other).1 >= count) {
-        return;
-    }
-    let (places, registers) = (if count == 1 { "a place" } else { "places" }, registers.join(", "));
-    let message = format!(
-        "as the size of its tool, a register ({registers}) has {places} where the tool does not fit into its own contour, as its wear, 0, fewer or none: \
-         say by --diameters what it is, and compare"
-    );
-    program.notes.push(Note::new(line, message));
-    program.notes.sort_by_key(|note| note.line);
-}
-
 /// How a program is read where controls differ, and it does not say how.
 #[derive(Clone, Copy)]
 struct Reading {
@@ -245,6 +222,11 @@ impl Reader {
         };
         let mut source = Rc::clone(&self.texts.sources[0]);
         let mut block = Block::default();
+        // Lines of a user task take longer.
+        let most_blocks = match self.has_user_task() {
+            true => most_blocks.min(MOST_USER_TASK),
+            false => most_blocks,
+        };
         let mut left = most_blocks;
         loop {
             if here.line >= source.len() {

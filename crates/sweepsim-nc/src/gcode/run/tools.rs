@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::interpreter::Reader;
-use crate::drive::Canonical;
+use crate::drive::{Canonical, NARROW};
 use crate::gcode::codes::LengthCode;
 use crate::gcode::offsets::known;
 use crate::gcode::syntax::block::Block;
 use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
+use crate::model::program::{Note, Program};
 use crate::model::read_options::{Controller, ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
@@ -232,4 +233,30 @@ impl Reader {
         }
         Ok(())
     }
+}
+
+/// Warns where registers D that were taken for the sizes of their tools make these go into their own contours, and as wear they do not.
+pub(super) fn compare_registers(program: &mut Program, as_wear: impl FnOnce() -> Option<Program>) {
+    let narrow = |program: &Program| {
+        let notes = program.notes.iter().filter(|note| note.message.contains(NARROW));
+        let lines: Vec<usize> = notes.map(|note| note.line).collect();
+        (lines.first().copied(), lines.len())
+    };
+    let (Some(line), count) = narrow(program) else { return };
+    let registers: Vec<&str> = program
+        .assumptions
+        .iter()
+        .filter(|one| one.what.starts_with('D') && one.taken.starts_with("the size of"))
+        .map(|one| one.what.as_str())
+        .collect();
+    if registers.is_empty() || as_wear().is_none_or(|other| narrow(&other).1 >= count) {
+        return;
+    }
+    let (places, registers) = (if count == 1 { "a place" } else { "places" }, registers.join(", "));
+    let message = format!(
+        "as the size of its tool, a register ({registers}) has {places} where the tool does not fit into its own contour, as its wear, 0, fewer or none: \
+         say by --diameters what it is, and compare"
+    );
+    program.notes.push(Note::new(line, message));
+    program.notes.sort_by_key(|note| note.line);
 }

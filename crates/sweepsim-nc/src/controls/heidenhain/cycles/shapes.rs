@@ -2,15 +2,15 @@
 //!
 //! Sources: *TNC 620, Cycle Programming* (340 56x-02), 5.2 to 5.7 and 8.1 to 8.5; *TNC 640* (34059x) for cycle 233.
 
-use super::cycles::Defined;
-use super::interpreter::Reader;
-use super::line::Line;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::state::Defined;
 use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     /// Faces (230, 232, 233), pockets (251, 252), slots (253, 254) and studs (256, 257).
-    pub(super) fn shape(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
+    pub(in crate::controls::heidenhain) fn shape(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
         let shape_of = |reader: &Self, tool: f64| {
             let defined = reader.defined(number, line);
             match number {

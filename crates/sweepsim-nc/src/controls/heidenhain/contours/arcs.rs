@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::interpreter::Reader;
-use super::line::Line;
-use super::moves::MoveWords;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::moves::MoveWords;
 use crate::drive::{CircularArc, Corner, CornerShape, ProgramPlace};
 use crate::text::error::{Located, NcProblem};
 
@@ -15,7 +15,7 @@ fn is_contour(word: &str) -> bool {
 
 impl Reader<'_> {
     /// `RND R5`, `CHF 2`: made with the move before it.
-    pub(super) fn corner_block(&mut self, line: &Line) -> Result<(), Located> {
+    pub(in crate::controls::heidenhain) fn corner_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         self.corner_of(line)?;
         let refuse = |side: &str| {
@@ -85,7 +85,7 @@ impl Reader<'_> {
     }
 
     /// The corner that the next block makes at the end of this move.
-    pub(super) fn corner_ahead(&mut self, rapid: bool, abc: [f64; 3]) -> Result<(), Located> {
+    pub(in crate::controls::heidenhain) fn corner_ahead(&mut self, rapid: bool, abc: [f64; 3]) -> Result<(), Located> {
         let Some((next, place)) = self.following_with_place() else {
             return Ok(());
         };
@@ -107,7 +107,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    pub(super) fn arc_block(
+    pub(in crate::controls::heidenhain) fn arc_block(
         &mut self,
         kind: &str,
         words: &MoveWords,

@@ -2,8 +2,8 @@
 //!
 //! Source: *TNC 620, Cycle Programming* (340 56x-02), 7.1 to 7.9. A contour is a pocket or an island by the side on which its subprogram has the tool, and the way around.
 
-use super::interpreter::{Level, LevelKind, Reader};
-use super::line::Line;
+use crate::controls::heidenhain::interpreter::{Level, LevelKind, Reader};
+use crate::controls::heidenhain::line::Line;
 use crate::controls::run::Running;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
@@ -11,34 +11,9 @@ use crate::text::error::{Located, NcProblem};
 /// The most blocks of a contour.
 const MOST_BLOCKS: usize = 100_000;
 
-/// What cycles 14 and 20 say.
-#[derive(Default)]
-pub(super) struct ContourData {
-    labels: Vec<String>,
-    levels: Option<Pocket>,
-    /// The overlap of ways, in radii of the tool.
-    overlap: f64,
-}
-
-impl ContourData {
-    /// `CYCL DEF 14.1 CONTOUR LABEL1 /2`: the numbers behind the word.
-    pub(super) fn name_labels(&mut self, part: &str, line: &Line) {
-        if part == "0" {
-            self.labels.clear();
-            return;
-        }
-        let words: Vec<&str> = line.tokens.iter().skip(3).map(|token| token.text.as_str()).collect();
-        let text = words.join(" ");
-        let numbers = text
-            .split(|c: char| !c.is_ascii_digit())
-            .filter(|digits| !digits.is_empty());
-        self.labels.extend(numbers.map(str::to_owned));
-    }
-}
-
 impl Reader<'_> {
     /// The levels of cycle 20, or of 25.
-    pub(super) fn contour_data(&mut self, number: u32, line: &Line) -> Result<(), Located> {
+    pub(in crate::controls::heidenhain) fn contour_data(&mut self, number: u32, line: &Line) -> Result<(), Located> {
         let defined = self.defined(number, line);
         let surface = defined.span(5)?;
         let start = surface + defined.span(6)?.abs();
@@ -68,7 +43,11 @@ impl Reader<'_> {
     }
 
     /// Cycles 22 to 25.
-    pub(super) fn contour_cycle(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
+    pub(in crate::controls::heidenhain) fn contour_cycle(
+        &mut self,
+        number: u32,
+        line: &Line,
+    ) -> Result<Cycle, Located> {
         let name = format!("cycle {number}");
         let courses = match self.courses() {
             Ok(courses) if !courses.is_empty() => courses,
@@ -164,8 +143,9 @@ impl Reader<'_> {
         }
         self.stack.truncate(depth);
         (self.modes.compensated, self.ended) = (compensated, false);
-        let course = self.track.recorded(self.modes.plane);
+        let recorded = self.track.recorded();
         ran?;
-        course.map_err(fail)
+        let recorded = recorded.map_err(fail)?;
+        Course::of(&recorded.strokes, self.modes.plane, recorded.left).map_err(fail)
     }
 }

@@ -3,9 +3,9 @@
 //! Sources: *TNC 620, Cycle Programming* (340 56x-02), chapters 3 and 4. Of thread milling the helix is made over the whole depth, and the hole before it; countersinks at the front
 //! are left out.
 
-use super::cycles::Defined;
-use super::interpreter::Reader;
-use super::line::Line;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::state::Defined;
 use crate::drive::{HoleCycle, HoleWork, Pecks, UNKNOWN_TOOL, WayOut};
 use crate::text::error::{Located, NcProblem};
 
@@ -14,7 +14,11 @@ const FROM_THE_WALL: f64 = 0.2;
 
 impl Reader<'_> {
     /// What one of the cycles 200 to 209, 240, 241, 262 to 265 and 267 makes.
-    pub(super) fn holes(&mut self, number: u32, line: &Line) -> Result<Vec<HoleCycle>, Located> {
+    pub(in crate::controls::heidenhain) fn holes(
+        &mut self,
+        number: u32,
+        line: &Line,
+    ) -> Result<Vec<HoleCycle>, Located> {
         let tool = match number {
             208 | 262..=267 => {
                 let width = self.defined(number, line).span(335)?;

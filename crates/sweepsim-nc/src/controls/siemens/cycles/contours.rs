@@ -3,9 +3,10 @@
 //! Source: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Manual Job Planning*, as posts write it too.
 
 use super::arguments::Arguments;
-use super::interpreter::{Level, Reader};
-use super::language::structures::Search;
 use crate::controls::run::Running;
+use crate::controls::siemens::interpreter::{Level, Reader};
+use crate::controls::siemens::language::structures::Search;
+use crate::controls::siemens::state::NamedContour;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
 
@@ -13,59 +14,32 @@ use crate::text::error::{Located, NcProblem};
 const MOST_BLOCKS: usize = 100_000;
 
 /// The cycles on contours. `CYCLE64` drills where `CYCLE63` plunges: its moves are not known.
-pub(super) const CONTOURS: [&str; 3] = ["CYCLE62", "CYCLE63", "CYCLE72"];
+pub(in crate::controls::siemens) const CONTOURS: [&str; 3] = ["CYCLE62", "CYCLE63", "CYCLE72"];
 
-/// The contours that `CYCLE62` has named.
-#[derive(Default)]
-pub(super) struct Contours {
-    named: Vec<Named>,
-    milled: bool,
-}
-
-/// Where a contour is: in a subprogram, between labels, or both.
-#[derive(Clone)]
-struct Named {
-    program: Option<String>,
-    labels: Option<[String; 2]>,
-}
-
-impl Named {
-    /// `CYCLE62(KNAME, TYPE, LAB1, LAB2)`: a subprogram (0), a contour between `E_LAB_A_` and `E_LAB_E_` (1), between labels (2), of a subprogram (3).
-    fn of(arguments: &Arguments) -> Option<Self> {
-        let name = arguments.text(0);
-        let labels = || Some([arguments.text(2)?, arguments.text(3)?]);
-        Some(match arguments.get(1).unwrap_or(0.0) {
-            0.0 => Self {
-                program: Some(name?),
-                labels: None,
-            },
-            1.0 => {
-                let name = name?;
-                Self {
-                    program: None,
-                    labels: Some(["A", "E"].map(|end| format!("E_LAB_{end}_{name}"))),
-                }
-            }
-            2.0 => Self {
-                program: None,
-                labels: Some(labels()?),
-            },
-            _ => Self {
-                program: Some(name?),
-                labels: Some(labels()?),
-            },
-        })
-    }
+/// `CYCLE62(KNAME, TYPE, LAB1, LAB2)`: a subprogram (0), a contour between `E_LAB_A_` and `E_LAB_E_` (1), between labels (2), of a subprogram (3).
+fn named(arguments: &Arguments) -> Option<NamedContour> {
+    let name = arguments.text(0);
+    let labels = || Some([arguments.text(2)?, arguments.text(3)?]);
+    let (program, labels) = match arguments.get(1).unwrap_or(0.0) {
+        0.0 => (Some(name?), None),
+        1.0 => {
+            let name = name?;
+            (None, Some(["A", "E"].map(|end| format!("E_LAB_{end}_{name}"))))
+        }
+        2.0 => (None, Some(labels()?)),
+        _ => (Some(name?), Some(labels()?)),
+    };
+    Some(NamedContour { program, labels })
 }
 
 impl Reader<'_> {
-    pub(super) fn contour_cycle(&mut self, arguments: &Arguments) -> Result<(), NcProblem> {
+    pub(in crate::controls::siemens) fn contour_cycle(&mut self, arguments: &Arguments) -> Result<(), NcProblem> {
         let name = arguments.name;
         if name == "CYCLE62" {
             if std::mem::take(&mut self.contours.milled) || arguments.values.iter().all(Option::is_none) {
                 self.contours.named.clear();
             }
-            self.contours.named.extend(Named::of(arguments));
+            self.contours.named.extend(named(arguments));
             return Ok(());
         }
         self.contours.milled = true;
@@ -73,7 +47,7 @@ impl Reader<'_> {
         let named = match arguments.text(0).filter(|_| name == "CYCLE72") {
             Some(text) => {
                 let labels = text.split_once(':').map(|(from, to)| [from.to_owned(), to.to_owned()]);
-                vec![Named {
+                vec![NamedContour {
                     program: Some(text).filter(|_| labels.is_none()),
                     labels,
                 }]
@@ -99,7 +73,7 @@ impl Reader<'_> {
     }
 
     /// The course of a contour, whose blocks run for it.
-    fn course(&mut self, named: &Named) -> Result<Course, Located> {
+    fn course(&mut self, named: &NamedContour) -> Result<Course, Located> {
         let fail = |problem| (problem, 0..0);
         let here = self.stack.last().map_or((0, 0), |level| (level.routine, level.next));
         let (routine, from) = match &named.program {
@@ -137,9 +111,10 @@ impl Reader<'_> {
         }
         self.stack.truncate(depth);
         (self.modes.motion, self.ended) = (motion, false);
-        let course = self.track.recorded(self.modes.plane);
+        let recorded = self.track.recorded();
         ran?;
-        course.map_err(fail)
+        let recorded = recorded.map_err(fail)?;
+        Course::of(&recorded.strokes, self.modes.plane, recorded.left).map_err(fail)
     }
 }
 

@@ -5,12 +5,12 @@ use crate::drive::{HoleCycle, HoleWork, Pecks};
 use crate::text::error::NcProblem;
 
 /// The drilling cycles.
-pub(super) const HOLES: [&str; 8] = [
+pub(in crate::controls::siemens) const HOLES: [&str; 8] = [
     "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89",
 ];
 
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
-pub(super) fn hole_cycle(arguments: &Arguments) -> Result<HoleCycle, NcProblem> {
+pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<HoleCycle, NcProblem> {
     let (name, unit) = (arguments.name, arguments.unit);
     let get = |index: usize| arguments.get(index);
     let length = |index: usize| get(index).map(|value| value * unit);
@@ -70,7 +70,7 @@ pub(super) fn hole_cycle(arguments: &Arguments) -> Result<HoleCycle, NcProblem> 
 
 /// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;
 /// `CYCLE78(RTP, RFP, SDIS, DP, ADPR, FDPR, LDPR, DIAM, PIT, PITA, …)`: a hole that is drilled and threaded by the same tool. The helix is made over the whole depth.
-pub(super) fn thread(arguments: &Arguments, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
+pub(in crate::controls::siemens) fn thread(arguments: &Arguments, tool: f64) -> Result<Vec<HoleCycle>, NcProblem> {
     let name = arguments.name;
     let get = |index: usize| arguments.get(index);
     let need = |index: usize, parameter: &str| arguments.need(index, parameter);

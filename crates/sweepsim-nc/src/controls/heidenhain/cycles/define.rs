@@ -1,10 +1,9 @@
 //! Cycles: which there are, and where they are called.
 
-use super::contour_cycles::ContourData;
-use super::interpreter::Reader;
-use super::line::Line;
-use super::planes::is_frame_cycle;
-use super::values::Parameters;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::planes::is_frame_cycle;
+use crate::controls::heidenhain::state::Defined;
 use crate::drive::Cycle;
 use crate::model::event::EventKind;
 use crate::text::assumption::Assumption;
@@ -13,87 +12,8 @@ use crate::text::error::{Located, NcProblem};
 /// The most places of a pattern.
 const MOST_PLACES: u32 = 10_000;
 
-/// The cycle that `CYCL CALL` and `M99` call, and what cycles on contours share.
-#[derive(Default)]
-pub(super) struct Cycles {
-    pub(super) cycle: Option<Cycle>,
-    /// Its number and its block, which patterns take with other levels.
-    block: Option<(u32, Line)>,
-    pub(super) contours: ContourData,
-}
-
-/// The block that defines a cycle.
-pub(super) struct Defined<'a> {
-    pub number: u32,
-    line: &'a Line,
-    parameters: &'a Parameters,
-    unit: f64,
-}
-
-impl Defined<'_> {
-    /// A parameter, if it is there and a number.
-    pub fn find(&self, parameter: u32) -> Result<Option<f64>, Located> {
-        let name = format!("Q{parameter}=");
-        for (index, token) in self.line.tokens.iter().enumerate() {
-            if let Some(rest) = token.text.strip_prefix(&name) {
-                let text = if rest.is_empty() {
-                    self.line.word(index + 1)
-                } else {
-                    rest
-                };
-                return match self.parameters.value(text) {
-                    Ok(value) => Ok(Some(value)),
-                    // FMAX, FAUTO.
-                    Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
-                    Err(problem) => Err((problem, token.span.clone())),
-                };
-            }
-        }
-        Ok(None)
-    }
-
-    /// A number, or 0.
-    pub fn number(&self, parameter: u32) -> Result<f64, Located> {
-        Ok(self.find(parameter)?.unwrap_or(0.0))
-    }
-
-    /// A length in mm, if it is there.
-    pub fn length(&self, parameter: u32) -> Result<Option<f64>, Located> {
-        Ok(self.find(parameter)?.map(|value| value * self.unit))
-    }
-
-    /// A length in mm, or 0.
-    pub fn span(&self, parameter: u32) -> Result<f64, Located> {
-        Ok(self.length(parameter)?.unwrap_or(0.0))
-    }
-
-    pub fn need(&self, parameter: u32) -> Result<f64, Located> {
-        let number = self.number;
-        let problem = || {
-            NcProblem::syntax(format!(
-                "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
-            ))
-        };
-        self.length(parameter)?.ok_or_else(|| self.fail(problem()))
-    }
-
-    /// A depth in mm, below 0.
-    pub fn depth(&self, parameter: u32) -> Result<f64, Located> {
-        let depth = self.need(parameter)?;
-        if depth >= 0.0 {
-            let what = format!("the depth Q{parameter} of cycle {}", self.number);
-            return Err(self.fail(NcProblem::value(what, depth, "negative")));
-        }
-        Ok(depth)
-    }
-
-    pub fn fail(&self, problem: NcProblem) -> Located {
-        (problem, self.line.all())
-    }
-}
-
 impl Reader<'_> {
-    pub(super) fn defined<'a>(&'a self, number: u32, line: &'a Line) -> Defined<'a> {
+    pub(in crate::controls::heidenhain) fn defined<'a>(&'a self, number: u32, line: &'a Line) -> Defined<'a> {
         Defined {
             number,
             line,
@@ -103,7 +23,7 @@ impl Reader<'_> {
     }
 
     /// `CYCL DEF` and `CYCL CALL`.
-    pub(super) fn cycle_block(&mut self, line: &Line) -> Result<(), Located> {
+    pub(in crate::controls::heidenhain) fn cycle_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         if line.word(1) == "CALL" {
             if let word @ ("PAT" | "POS") = line.word(2) {
@@ -172,7 +92,7 @@ impl Reader<'_> {
     }
 
     /// Calls the cycle at the current place.
-    pub(super) fn call_cycle(&mut self) -> Result<(), NcProblem> {
+    pub(in crate::controls::heidenhain) fn call_cycle(&mut self) -> Result<(), NcProblem> {
         match &self.cycles.cycle {
             Some(cycle) => self.track.cycle_here(cycle, self.modes.plane, self.uncertain),
             None if self.uncertain => Ok(()),

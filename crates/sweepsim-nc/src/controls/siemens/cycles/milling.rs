@@ -4,28 +4,28 @@
 //! compared with two of them.
 
 use super::arguments::Arguments;
-use super::interpreter::Reader;
-use super::language::expression::Value;
+use crate::controls::siemens::interpreter::Reader;
+use crate::controls::siemens::language::expression::Value;
 use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::model::stock::StockDescription;
 use crate::text::error::NcProblem;
 
 /// The most places of a pattern.
-pub(super) const MOST_PLACES: u32 = 10_000;
+pub(in crate::controls::siemens) const MOST_PLACES: u32 = 10_000;
 
 /// The milling cycles.
-pub(super) const MILLING: [&str; 8] = [
+pub(in crate::controls::siemens) const MILLING: [&str; 8] = [
     "CYCLE61", "POCKET3", "POCKET4", "CYCLE76", "CYCLE77", "SLOT1", "SLOT2", "LONGHOLE",
 ];
 /// A milling cycle, and where its shapes are: middles in the plane, and turns; of slots on a circle, the radius of their middle lines and how long they are, in degrees.
-pub(super) struct Milled {
+pub(in crate::controls::siemens) struct Milled {
     pub pocket: Pocket,
     pub places: Vec<([f64; 2], f64)>,
     pub bent: Option<[f64; 2]>,
 }
 
 /// One of the [milling cycles](MILLING), with a tool of this radius; `None` for others.
-pub(super) fn milled(arguments: &Arguments, tool: f64) -> Option<Result<Milled, NcProblem>> {
+pub(in crate::controls::siemens) fn milled(arguments: &Arguments, tool: f64) -> Option<Result<Milled, NcProblem>> {
     Some(match arguments.name {
         "POCKET3" | "CYCLE76" => rectangle(arguments, tool),
         "POCKET4" | "CYCLE77" => circle(arguments, tool),
@@ -239,7 +239,7 @@ fn bent_slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
 
 impl Reader<'_> {
     /// A milling cycle: at once, each of its shapes.
-    pub(super) fn mill(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
+    pub(in crate::controls::siemens) fn mill(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
         let name = arguments.name;
         let Some(shape) = milled(arguments, 0.0) else {
             return Ok(false);
@@ -278,7 +278,7 @@ impl Reader<'_> {
 }
 
 /// The block of `WORKPIECE(…, "BOX", 112, ZA, ZI, ZB, XA, YA, XI, YI)`, whose coordinates are absolute, in mm.
-pub(super) fn workpiece(values: &[Option<Value>], unit: f64) -> Option<StockDescription> {
+pub(in crate::controls::siemens) fn workpiece(values: &[Option<Value>], unit: f64) -> Option<StockDescription> {
     let kind = values
         .iter()
         .position(|value| matches!(value, Some(Value::Text(kind)) if kind.eq_ignore_ascii_case("BOX")))?;

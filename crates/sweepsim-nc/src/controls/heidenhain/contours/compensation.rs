@@ -1,13 +1,18 @@
 //! Cutter compensation.
 
-use super::interpreter::Reader;
-use super::moves::MoveWords;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::moves::MoveWords;
 use crate::drive::{CompensationSettings, Corners, DiameterAsked};
 use crate::text::error::NcProblem;
 
 impl Reader<'_> {
     /// `RL` and `RR`: from this move on.
-    pub(super) fn compensate(&mut self, left: bool, words: &MoveWords, kind: &str) -> Result<(), NcProblem> {
+    pub(in crate::controls::heidenhain) fn compensate(
+        &mut self,
+        left: bool,
+        words: &MoveWords,
+        kind: &str,
+    ) -> Result<(), NcProblem> {
         if self.modes.compensated == Some(left) && self.track.compensates() {
             return Ok(());
         }
@@ -48,7 +53,7 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool with the oversize of its call. `unknown`: its diameter where nobody tells it, in mm.
-    pub(super) fn cutter_radius(&mut self, unknown: f64) -> Option<f64> {
+    pub(in crate::controls::heidenhain) fn cutter_radius(&mut self, unknown: f64) -> Option<f64> {
         let tool = self.track.tool.unwrap_or(0);
         let known = self.given_radius(tool);
         let radius = match known {
@@ -76,7 +81,7 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool in the spindle, if anything tells it.
-    pub(super) fn known_radius(&mut self) -> Option<f64> {
+    pub(in crate::controls::heidenhain) fn known_radius(&mut self) -> Option<f64> {
         let given = self.given_radius(self.track.tool?);
         let unit = self.unit();
         given.or_else(|| self.track.tool_diameter(unit).map(|diameter| 0.5 * diameter))

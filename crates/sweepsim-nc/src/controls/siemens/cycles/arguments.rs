@@ -1,10 +1,10 @@
 //! The arguments of cycles.
 
-use super::language::expression::Value;
+use crate::controls::siemens::language::expression::Value;
 use crate::text::error::NcProblem;
 
 /// The arguments of a cycle.
-pub(super) struct Arguments<'a> {
+pub(in crate::controls::siemens) struct Arguments<'a> {
     pub name: &'a str,
     pub values: &'a [Option<Value>],
     /// Millimetres per unit of length.

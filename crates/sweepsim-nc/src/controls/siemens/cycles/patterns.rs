@@ -3,14 +3,14 @@
 //! Sources: as of [`milling`](super::milling); CYCLE801 was compared with two other readers.
 
 use super::arguments::Arguments;
-use super::interpreter::Reader;
 use super::milling::MOST_PLACES;
-use super::state::Modal;
+use crate::controls::siemens::interpreter::Reader;
+use crate::controls::siemens::state::Modal;
 use crate::text::assumption::Assumption;
 use crate::text::error::NcProblem;
 
 /// Where the modal cycle is called.
-pub(super) const PATTERNS: [&str; 3] = ["HOLES1", "HOLES2", "CYCLE801"];
+pub(in crate::controls::siemens) const PATTERNS: [&str; 3] = ["HOLES1", "HOLES2", "CYCLE801"];
 
 /// `HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM)`, `HOLES2(CPA, CPO, RAD, STA1, INDA, NUM)`, `CYCLE801(SPCA, SPCO, STA, DIS1, DIS2, NUM1, NUM2)`: places in the plane; `None` for others.
 fn pattern(arguments: &Arguments) -> Option<Result<Vec<[f64; 2]>, NcProblem>> {
@@ -71,7 +71,7 @@ fn pattern(arguments: &Arguments) -> Option<Result<Vec<[f64; 2]>, NcProblem>> {
 
 impl Reader<'_> {
     /// A pattern: the modal cycle at each of its places.
-    pub(super) fn places(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
+    pub(in crate::controls::siemens) fn places(&mut self, arguments: &Arguments) -> Result<bool, NcProblem> {
         let name = arguments.name;
         let Some(places) = pattern(arguments) else {
             return Ok(false);
@@ -91,7 +91,7 @@ impl Reader<'_> {
     }
 
     /// In rapid over a place, not below a level.
-    pub(super) fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
+    pub(in crate::controls::siemens) fn go_to_place(&mut self, [a, b]: [f64; 2], level: f64) -> Result<(), NcProblem> {
         let [u, v, w] = self.modes.plane;
         let Some(mut at) = self.track.known() else {
             // The cycle says from where it begins.

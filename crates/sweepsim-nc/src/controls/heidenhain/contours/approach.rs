@@ -5,9 +5,9 @@
 
 use std::f64::consts::TAU;
 
-use super::interpreter::Reader;
-use super::line::Line;
-use super::moves::MoveWords;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::moves::MoveWords;
 use crate::drive::CircularArc;
 use crate::text::error::{Located, NcProblem};
 
@@ -47,7 +47,7 @@ fn touch(from: Flat, centre: Flat, radius: f64, counter_clockwise: bool) -> Opti
 
 impl Reader<'_> {
     /// `APPR` and `DEP`.
-    pub(super) fn approach_block(&mut self, line: &Line) -> Result<(), Located> {
+    pub(in crate::controls::heidenhain) fn approach_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         let (comes, kind) = (line.word(0) == "APPR", line.word(1).to_owned());
         if !matches!(kind.as_str(), "LT" | "LN" | "CT" | "LCT") {

@@ -1,0 +1,5 @@
+//! Contours: arcs, corners, cutter compensation, approach and departure.
+
+mod approach;
+mod arcs;
+mod compensation;

@@ -1,0 +1,6 @@
+//! Cycles.
+
+mod contours;
+mod define;
+mod holes;
+mod shapes;

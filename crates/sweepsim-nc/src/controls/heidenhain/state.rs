@@ -1,0 +1,110 @@
+//! Cycles that have been defined: the cycle that is called, and what cycles on contours share.
+
+use super::line::Line;
+use super::values::Parameters;
+use crate::drive::{Cycle, Pocket};
+use crate::text::error::{Located, NcProblem};
+
+/// The cycle that `CYCL CALL` and `M99` call, and what cycles on contours share.
+#[derive(Default)]
+pub(super) struct Cycles {
+    pub(super) cycle: Option<Cycle>,
+    /// Its number and its block, which patterns take with other levels.
+    pub(super) block: Option<(u32, Line)>,
+    pub(super) contours: ContourData,
+}
+
+/// What cycles 14 and 20 say.
+#[derive(Default)]
+pub(super) struct ContourData {
+    pub(super) labels: Vec<String>,
+    pub(super) levels: Option<Pocket>,
+    /// The overlap of ways, in radii of the tool.
+    pub(super) overlap: f64,
+}
+
+impl ContourData {
+    /// `CYCL DEF 14.1 CONTOUR LABEL1 /2`: the numbers behind the word.
+    pub(super) fn name_labels(&mut self, part: &str, line: &Line) {
+        if part == "0" {
+            self.labels.clear();
+            return;
+        }
+        let words: Vec<&str> = line.tokens.iter().skip(3).map(|token| token.text.as_str()).collect();
+        let text = words.join(" ");
+        let numbers = text
+            .split(|c: char| !c.is_ascii_digit())
+            .filter(|digits| !digits.is_empty());
+        self.labels.extend(numbers.map(str::to_owned));
+    }
+}
+
+/// The block that defines a cycle.
+pub(super) struct Defined<'a> {
+    pub number: u32,
+    pub(super) line: &'a Line,
+    pub(super) parameters: &'a Parameters,
+    pub(super) unit: f64,
+}
+
+impl Defined<'_> {
+    /// A parameter, if it is there and a number.
+    pub fn find(&self, parameter: u32) -> Result<Option<f64>, Located> {
+        let name = format!("Q{parameter}=");
+        for (index, token) in self.line.tokens.iter().enumerate() {
+            if let Some(rest) = token.text.strip_prefix(&name) {
+                let text = if rest.is_empty() {
+                    self.line.word(index + 1)
+                } else {
+                    rest
+                };
+                return match self.parameters.value(text) {
+                    Ok(value) => Ok(Some(value)),
+                    // FMAX, FAUTO.
+                    Err(_) if text.starts_with('F') || matches!(text, "MAX" | "AUTO") => Ok(None),
+                    Err(problem) => Err((problem, token.span.clone())),
+                };
+            }
+        }
+        Ok(None)
+    }
+
+    /// A number, or 0.
+    pub fn number(&self, parameter: u32) -> Result<f64, Located> {
+        Ok(self.find(parameter)?.unwrap_or(0.0))
+    }
+
+    /// A length in mm, if it is there.
+    pub fn length(&self, parameter: u32) -> Result<Option<f64>, Located> {
+        Ok(self.find(parameter)?.map(|value| value * self.unit))
+    }
+
+    /// A length in mm, or 0.
+    pub fn span(&self, parameter: u32) -> Result<f64, Located> {
+        Ok(self.length(parameter)?.unwrap_or(0.0))
+    }
+
+    pub fn need(&self, parameter: u32) -> Result<f64, Located> {
+        let number = self.number;
+        let problem = || {
+            NcProblem::syntax(format!(
+                "cycle {number} without Q{parameter}: expected Q{parameter}= a number"
+            ))
+        };
+        self.length(parameter)?.ok_or_else(|| self.fail(problem()))
+    }
+
+    /// A depth in mm, below 0.
+    pub fn depth(&self, parameter: u32) -> Result<f64, Located> {
+        let depth = self.need(parameter)?;
+        if depth >= 0.0 {
+            let what = format!("the depth Q{parameter} of cycle {}", self.number);
+            return Err(self.fail(NcProblem::value(what, depth, "negative")));
+        }
+        Ok(depth)
+    }
+
+    pub fn fail(&self, problem: NcProblem) -> Located {
+        (problem, self.line.all())
+    }
+}
