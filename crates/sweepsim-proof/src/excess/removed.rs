@@ -42,6 +42,8 @@ pub(super) struct Known {
     pub is_removed: bool,
 }
 
+/// Of the stretches in whose boxes a patch is, so many are looked at, those in whose middles it is.
+const CENTRAL: usize = 32;
 /// As many stretches are tried for a patch, those deepest around its middle.
 const TRIED: usize = 3;
 /// How much a place nearer to the axis counts, beside one that is deeper.
@@ -91,7 +93,7 @@ impl<'a> Course<'a> {
             if !solid.convex.is_exact() {
                 continue;
             }
-            solid.boxes.around(&low, &high, &mut |own| {
+            for own in solid.boxes.most_central(&low, &high, CENTRAL) {
                 let stretch = &self.stretches[own];
                 let (value, time) = quick(&solid.level, stretch, middle);
                 all.push(Candidate {
@@ -102,8 +104,7 @@ impl<'a> Course<'a> {
                     time,
                     numbers: [course, number, own],
                 });
-                true
-            });
+            }
         }
     }
 
