@@ -31,8 +31,9 @@ pub(crate) struct Left<'a> {
     pub distance: f64,
 }
 
-/// Regions are cut at so many of their planes.
+/// Regions are cut at so many of their planes, while there are no more points.
 const CUT: usize = 6;
+const MOST_POINTS: usize = 48;
 /// Steps of a search for a time.
 const STEPS: usize = 40;
 
@@ -120,7 +121,10 @@ impl Left<'_> {
             {
                 continue;
             }
-            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| below(points, |p| dot(n, p) - (c + margin));
+            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| match points.len() {
+                ..=MOST_POINTS => below(points, |p| dot(n, p) - (c + margin)),
+                _ => points,
+            };
             all.extend(region.iter().take(CUT).fold(points.to_vec(), cut));
         }
         all
