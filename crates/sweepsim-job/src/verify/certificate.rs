@@ -1,7 +1,8 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
+use super::asked::solids;
 use super::asked::{Asked, AskedAll};
-use super::proof::{Certified, solids};
+use super::proof::Certified;
 use crate::base::JobError;
 use crate::request::{Input, Request};
 use crate::session::Plan;

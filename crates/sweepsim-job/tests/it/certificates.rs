@@ -73,8 +73,8 @@ fn every_changed_byte_of_all_statements_is_refused() {
         changed[number] ^= 1 + (number % 255) as u8;
         assert!(Certificate::read(&changed).is_err(), "byte {number}");
     }
-    // With a digest that fits, what is accepted is still true: the holder stays 26 mm above the target, and 5 mm and more
-    // beside the clamp.
+    // With a digest that fits, what is accepted is still true: the holder stays 26 mm above the target, and 5 mm
+    // and more beside the clamp.
     let end = text.len() - ",\"digest\":\"\"}\n".len() - 64;
     let changed_file = folder.path().join("changed.json");
     let (mut refused, mut accepted) = (0, 0);

@@ -22,8 +22,8 @@ pub(crate) struct CourseSolid<'a> {
 /// Of some points, which are held.
 pub(super) type Held = SmallVec<[bool; 12]>;
 
-/// What holds some points: a cutter, one of its solids, a stretch of its path, and a time in it, which does not count on
-/// a straight one.
+/// What holds some points: a cutter, one of its solids, a stretch of its path, and a time in it, which does not
+/// count on a straight one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Holder {
     pub course: usize,
@@ -285,8 +285,8 @@ fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f6
     lowest(of, [(near - step).max(0.0), (near + step).min(1.0)], STEPS)
 }
 
-/// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point moves
-/// against it.
+/// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point
+/// moves against it.
 pub(crate) fn stays_away(level: &Level, (stretch, latest): (&Stretch, f64), point: &Vector3<f64>, margin: f64) -> bool {
     if stretch.is_straight() && latest == 1.0 {
         return stays_beside(level, stretch, point, margin);

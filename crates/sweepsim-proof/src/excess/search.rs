@@ -66,8 +66,8 @@ pub fn margin(size: f64, cutters: &[Cutter], limits: &Limits) -> f64 {
     limits.deviation + MARGIN * (size + reach + limits.depth)
 }
 
-/// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can follow
-/// the proof. `None` if the monitor cancelled the work.
+/// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can
+/// follow the proof. `None` if the monitor cancelled the work.
 ///
 /// # Errors
 /// The stock has too many vertices.

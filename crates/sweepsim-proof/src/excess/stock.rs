@@ -27,8 +27,8 @@ const SIDES_OF_BALL: usize = 64;
 const CUT: usize = 6;
 const MOST_POINTS: usize = 48;
 
-/// Convex regions that hold a stock, by the unit normals `n` of planes and the largest `⟨n, x⟩`. `None` of a mesh. `skin`:
-/// they are smaller by that.
+/// Convex regions that hold a stock, by the unit normals `n` of planes and the largest `⟨n, x⟩`. `None` of a mesh.
+/// `skin`: they are smaller by that.
 #[must_use]
 pub fn regions(stock: &Stock, skin: f64) -> Option<Vec<Vec<Plane>>> {
     let region = |outer: Outer| match outer {

@@ -49,8 +49,8 @@ pub struct Room {
 /// What comes too near to material.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// The moves that were seen to, each with a place, and how deep it is in material; or, with room wanted, how near to
-    /// it. With the path.
+    /// The moves that were seen to, each with a place, and how deep it is in material; or, with room wanted, how
+    /// near to it. With the path.
     pub moves: Vec<(usize, Witness)>,
     /// Where it is not known, with the path: some of these places.
     pub open: Vec<(usize, OpenBox)>,

@@ -4,20 +4,12 @@
 //! triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
 
 use super::outside::is_outside;
-use super::polygon::{area, clip};
+use super::polygon::{Piece, area, clip};
 use super::way::{Normal, Triangle, Way};
 use nalgebra::Vector3;
-use smallvec::SmallVec;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::DistanceTo;
-
-/// Part of a triangle: a convex polygon.
-#[derive(Clone, Debug)]
-pub(crate) struct Piece {
-    pub triangle: u32,
-    pub corners: SmallVec<[Vector3<f64>; 4]>,
-}
 
 /// What is near a cell.
 #[derive(Clone, Debug)]

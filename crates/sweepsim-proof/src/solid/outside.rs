@@ -1,6 +1,6 @@
 //! Whether a point near some of a surface is outside.
 
-use super::cell::Piece;
+use super::polygon::Piece;
 use super::way::Triangle;
 use nalgebra::Vector3;
 

@@ -2,8 +2,8 @@
 
 mod bodies;
 mod excess;
-pub(super) mod solids;
 
+use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;
