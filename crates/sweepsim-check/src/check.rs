@@ -38,8 +38,8 @@ impl Checked {
     }
 }
 
-/// Checks what is claimed in answer to a question: that what is measured is at most its bound, and at least as much as at
-/// its witness. `threads`: how many work at it.
+/// Checks what is claimed in answer to a question: that what is measured is at most its bound, and at least as much
+/// as at its witness. `threads`: how many work at it.
 #[must_use]
 pub fn check(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> Checked {
     let mut checked = Checked::default();
@@ -176,7 +176,8 @@ fn depth(
     all(&claim.trees, threads, one)
 }
 
-/// Whether a point of a solid is outside where each stretch begins: unless it was nearer than `distance` to there before.
+/// Whether a point of a solid is outside where each stretch begins: unless it was nearer than `distance` to there
+/// before.
 fn starts_outside(body: &Body, stretches: &[Stretch], surface: &Surface, distance: f64) -> bool {
     let height = 0.5 * (body.heights[0] + body.heights[1]);
     let [starts, ends] = [0, 1].map(|end| {

@@ -5,10 +5,10 @@
 //! `Σ`. A tree divides each of them, and gives for each part a reason:
 //!
 //! - **Flat**: it need not be looked at.
-//! - **Outside**: nothing of its hull is in the stock. The stock is in convex regions; of each, the hull of the points is
-//!   beyond a plane, or cut off at its first planes until nothing is left.
-//! - **Removed**: of what is left so, all points are in one convex part of a tool at one time; or each at some time of a
-//!   straight stretch, along which a convex solid sweeps a convex one. So their hull was removed.
+//! - **Outside**: nothing of its hull is in the stock. The stock is in convex regions; of each, the hull of the
+//!   points is beyond a plane, or cut off at its first planes until nothing is left.
+//! - **Removed**: of what is left so, all points are in one convex part of a tool at one time; or each at some time
+//!   of a straight stretch, along which a convex solid sweeps a convex one. So their hull was removed.
 //! - **Near**: all points are nearer to one triangle than `d`. That is convex, too: so it is not in `Σ`.
 //!
 //! All this holds by a [margin](crate::Scene::margin), which is larger than roundings, what is flat, and what motions
@@ -31,8 +31,9 @@ pub(crate) struct Left<'a> {
     pub distance: f64,
 }
 
-/// Regions are cut at so many of their planes.
+/// Regions are cut at so many of their planes, while there are no more points.
 const CUT: usize = 6;
+const MOST_POINTS: usize = 48;
 /// Steps of a search for a time.
 const STEPS: usize = 40;
 
@@ -120,7 +121,10 @@ impl Left<'_> {
             {
                 continue;
             }
-            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| below(points, |p| dot(n, p) - (c + margin));
+            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| match points.len() {
+                ..=MOST_POINTS => below(points, |p| dot(n, p) - (c + margin)),
+                _ => points,
+            };
             all.extend(region.iter().take(CUT).fold(points.to_vec(), cut));
         }
         all

@@ -193,8 +193,8 @@ fn off_unit(controls: &[(V3, f64)]) -> f64 {
     (0..=2 * n).map(coefficient).fold(0.0, f64::max) / (least * least)
 }
 
-/// The tip and the axis of a linear motion: the rational arc between the axes is `(a (1 − t)² + 2 s t (1 − t) + b t²)/…`
-/// with `s = (a + b)/|a + b|` and the middle weight `|a + b|/2`.
+/// The tip and the axis of a linear motion: the rational arc between the axes is `(a (1 − t)² + 2 s t (1 − t) + b
+/// t²)/…` with `s = (a + b)/|a + b|` and the middle weight `|a + b|/2`.
 fn turned([[from, a], [to, b]]: &[[V3; 2]; 2]) -> Option<[Vec<(V3, f64)>; 2]> {
     let sum = add(a, b);
     let axis = if norm(&cross(a, b)) < STILL && dot(a, b) > 0.0 {

@@ -31,8 +31,8 @@ pub(crate) struct Patch {
     pub is_flat: bool,
 }
 
-/// The patches of triangles, each followed by those of its edges with later triangles; then those of all corners. `None`
-/// if a triangle has no area.
+/// The patches of triangles, each followed by those of its edges with later triangles; then those of all corners.
+/// `None` if a triangle has no area.
 pub(crate) fn patches(surface: &Surface) -> Option<Vec<Patch>> {
     let triangles = &surface.triangles;
     let normal = |[a, b, c]: &Triangle| unit(&cross(&sub(b, a), &sub(c, a)));

@@ -91,8 +91,11 @@ fn is_linear(segment: &Segment, ends: &[[[f64; 3]; 2]; 2]) -> bool {
 /// The cutters that answer a question, each with the number of its path.
 type Answering<'a> = &'a [(usize, Cutter<'a>)];
 
+/// How an outline is cut into solids.
+type Cover = Vec<[usize; 2]>;
+
 /// For each mover of a question: its cutter, the first of its solids there, and how the outline is cut.
-fn movers(scene: &Scene, question: &Question, cutters: Answering) -> Option<Vec<(usize, usize, Vec<[usize; 2]>)>> {
+fn movers(scene: &Scene, question: &Question, cutters: Answering) -> Option<Vec<(usize, usize, Cover)>> {
     let mut taken = vec![0; cutters.len()];
     let one = |(path, outline): &(usize, usize)| {
         let number = cutters.iter().position(|(own, _)| own == path)?;
@@ -115,7 +118,7 @@ fn trees(
     question: &Question,
     cutters: Answering,
     all: &[Tree],
-) -> Option<(Vec<Vec<[usize; 2]>>, Vec<sweepsim_check::Tree>)> {
+) -> Option<(Vec<Cover>, Vec<sweepsim_check::Tree>)> {
     let movers = movers(scene, question, cutters)?;
     let one = |tree: &Tree| {
         let own = |(cutter, first, _): &(usize, usize, _)| *cutter == tree.path && *first <= tree.solid;

@@ -1,6 +1,7 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
-use super::asked::AskedAll;
+use super::asked::solids;
+use super::asked::{Asked, AskedAll};
 use super::proof::Certified;
 use crate::base::JobError;
 use crate::request::{Input, Request};
@@ -149,7 +150,19 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
     if let Some(changed) = files.iter().find(|stated| !is_there(stated)) {
         return Err(other(format!("{} has changed, or is not there", changed.file)));
     }
-    let own = AskedAll::new(&plan.job, &plan.request).scene();
+    let asked = AskedAll::new(&plan.job, &plan.request);
+    // A checker of heights takes it as given that triangles do not cross.
+    let is_height = |asked: &&Asked| asked.measure == Measure::Height;
+    let heights = asked.statements.iter().filter(is_height);
+    for number in heights.flat_map(|asked| &asked.obstacles) {
+        let soup = asked.obstacles[*number].triangles.as_ref();
+        let solid = soup
+            .map_err(String::clone)
+            .and_then(|soup| solids::of_mesh(soup, "the target"));
+        solid.map_err(|why| JobError::file(file, why))?;
+    }
+    let own = asked.scene();
+    drop(asked);
     if own.digest() != scene || own.questions.len() != claims.len() {
         return Err(other("targets, tools, paths, fixtures or limits are others".into()));
     }

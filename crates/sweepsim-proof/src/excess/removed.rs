@@ -22,8 +22,8 @@ pub(crate) struct CourseSolid<'a> {
 /// Of some points, which are held.
 pub(super) type Held = SmallVec<[bool; 12]>;
 
-/// What holds some points: a cutter, one of its solids, a stretch of its path, and a time in it, which does not count on
-/// a straight one.
+/// What holds some points: a cutter, one of its solids, a stretch of its path, and a time in it, which does not
+/// count on a straight one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Holder {
     pub course: usize,
@@ -42,6 +42,8 @@ pub(super) struct Known {
     pub is_removed: bool,
 }
 
+/// Of the stretches in whose boxes a patch is, so many are looked at, those in whose middles it is.
+const CENTRAL: usize = 32;
 /// As many stretches are tried for a patch, those deepest around its middle.
 const TRIED: usize = 3;
 /// How much a place nearer to the axis counts, beside one that is deeper.
@@ -91,7 +93,7 @@ impl<'a> Course<'a> {
             if !solid.convex.is_exact() {
                 continue;
             }
-            solid.boxes.around(&low, &high, &mut |own| {
+            for own in solid.boxes.most_central(&low, &high, CENTRAL) {
                 let stretch = &self.stretches[own];
                 let (value, time) = quick(&solid.level, stretch, middle);
                 all.push(Candidate {
@@ -102,8 +104,7 @@ impl<'a> Course<'a> {
                     time,
                     numbers: [course, number, own],
                 });
-                true
-            });
+            }
         }
     }
 
@@ -284,8 +285,8 @@ fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f6
     lowest(of, [(near - step).max(0.0), (near + step).min(1.0)], STEPS)
 }
 
-/// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point moves
-/// against it.
+/// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point
+/// moves against it.
 pub(crate) fn stays_away(level: &Level, (stretch, latest): (&Stretch, f64), point: &Vector3<f64>, margin: f64) -> bool {
     if stretch.is_straight() && latest == 1.0 {
         return stays_beside(level, stretch, point, margin);

@@ -1,11 +1,14 @@
 //! The search for the highest place that is left standing.
 
+mod look;
+
 use super::record::{PatchTrees, Record, Step, key, parts, trees};
-use super::removed::{Course, Known, Removed};
-use super::stock::Before;
-use super::surface::{Halved, Patch};
+use super::removed::{Course, Removed};
+use super::stock::{Before, regions};
+use super::surface::Patch;
 use crate::search::{Cutter, Limits};
 use crate::solid::Target;
+use look::Search;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -63,8 +66,8 @@ pub fn margin(size: f64, cutters: &[Cutter], limits: &Limits) -> f64 {
     limits.deviation + MARGIN * (size + reach + limits.depth)
 }
 
-/// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can follow
-/// the proof. `None` if the monitor cancelled the work.
+/// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can
+/// follow the proof. `None` if the monitor cancelled the work.
 ///
 /// # Errors
 /// The stock has too many vertices.
@@ -110,8 +113,8 @@ pub fn highest(
         patches,
         steps,
         numbers: if recorded { numbers.collect() } else { HashMap::new() },
-        // Without some of the triangles, the patches are not those of a checker.
-        recorded: recorded && target.is_whole,
+        // Without some of the triangles, the patches are not those of a checker; and of a mesh, it knows no regions.
+        recorded: recorded && target.is_whole && regions(stock, 0.0).is_some(),
     };
     Ok(scene.search(limits, monitor))
 }
@@ -291,126 +294,5 @@ impl Scene<'_> {
     /// How far a point is from the target; less than 0 inside.
     fn height(&self, point: &Vector3<f64>) -> f64 {
         -self.target.depth((*point).into())
-    }
-}
-
-/// The search in a patch.
-struct Search<'a> {
-    scene: &'a Scene<'a>,
-    distance: f64,
-    known: f64,
-    /// Places that are not higher by so much are not looked for.
-    finer: f64,
-    found: Found,
-}
-
-impl Search<'_> {
-    fn look(&mut self, patch: Patch, most: usize) {
-        let mut open = vec![patch];
-        while let Some(patch) = open.pop() {
-            let Some((whole, middle)) = patch.points(self.distance) else {
-                match patch.halves(self.distance, 0.0, &[]) {
-                    Some(halves) => self.halve(halves, &mut open),
-                    None => self.leave(&patch.corners),
-                }
-                continue;
-            };
-            self.found.patches += 1;
-            let scene = self.scene;
-            let points = scene.before.within(&whole, &middle);
-            if points.is_empty() {
-                self.record(Record::outside);
-                continue;
-            }
-            let Known {
-                mut held,
-                holder,
-                is_removed,
-            } = scene.removed.held(&points, &middle);
-            if let Some(holder) = holder {
-                self.record(|record| record.removed(holder));
-                continue;
-            }
-            if let Some(corners) = self.near(&whole, &middle) {
-                self.record(|record| record.near(scene.numbers.get(&key(&corners)).copied().unwrap_or(u32::MAX)));
-                continue;
-            }
-            if points.len() != whole.len() {
-                held.clear();
-            }
-            if !is_removed && scene.is_left(&middle) {
-                let height = scene.height(&middle) - scene.removed.margin;
-                self.found.take(middle, height);
-                // Else the middle is not of the surface.
-                if height > self.distance * (1.0 - SHARE) {
-                    self.found.is_left = true;
-                    self.rise(&patch);
-                    continue;
-                }
-            }
-            match patch.halves(self.distance, FINEST * self.distance, &held) {
-                Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
-                _ => self.leave(&points),
-            }
-        }
-    }
-
-    fn halve(&mut self, (halved, [first, second]): (Halved, [Patch; 2]), open: &mut Vec<Patch>) {
-        self.record(|record| record.halved(halved));
-        open.extend([second, first]);
-    }
-
-    fn record(&mut self, write: impl FnOnce(&mut Record)) {
-        // What is not finished is of no use.
-        if self.scene.recorded && self.found.open_count == 0 && !self.found.is_left {
-            write(&mut self.found.record);
-        } else {
-            self.found.record.clear();
-        }
-    }
-
-    /// The triangle to which the hull of some points is nearer than the distance.
-    fn near(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<[[f64; 3]; 3]> {
-        let triangle = self.scene.target.distance.nearest_triangle((*middle).into())?;
-        let least = self.distance - self.scene.removed.margin;
-        let mut all = points.iter().map(|point| triangle.distance_of((*point).into()));
-        let is_near = triangle.distance < least && all.all(|distance| distance < least);
-        is_near.then_some(triangle.corners)
-    }
-
-    /// Looks how far what is left reaches, above a place where something is left.
-    fn rise(&mut self, patch: &Patch) {
-        let scene = self.scene;
-        let (from, up) = patch.middle();
-        // Only if it is higher than what is known.
-        let known = self.known.max(self.found.height());
-        let at = |height: f64| from + up * height;
-        let is_left = |height: f64| scene.is_left(&at(height));
-        let mut low = known.max(self.distance) + self.finer;
-        if !is_left(low) {
-            return;
-        }
-        let mut high = 2.0 * low;
-        while is_left(high) {
-            (low, high) = (high, 2.0 * high);
-        }
-        for _ in 0..STEPS {
-            let middle = 0.5 * (low + high);
-            if is_left(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        self.found.take(at(low), scene.height(&at(low)) - scene.removed.margin);
-    }
-
-    fn leave(&mut self, points: &[Vector3<f64>]) {
-        self.found.open_count += 1;
-        if self.found.open.len() < MOST_OPEN {
-            let low = points.iter().fold(points[0], |low, point| low.inf(point));
-            let high = points.iter().fold(points[0], |high, point| high.sup(point));
-            self.found.open.push([low.into(), high.into()]);
-        }
     }
 }

@@ -3,6 +3,7 @@
 use super::surface::Points;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
+use sweepsim_check::Plane;
 use sweepsim_dexel::{DistanceTo, MeshError, Stock};
 
 /// A stock, prepared for what is asked of it here: without its skin, so that what ends on its surface is beside it.
@@ -22,13 +23,14 @@ enum Outer {
 /// A cylinder is between so many planes, and a ball between as many in each of half as many turns.
 const SIDES: usize = 720;
 const SIDES_OF_BALL: usize = 64;
-/// Regions are cut at so many of their planes.
+/// Regions are cut at so many of their planes, while there are no more points.
 const CUT: usize = 6;
+const MOST_POINTS: usize = 48;
 
-/// Convex regions that hold a stock, by the unit normals `n` of planes and the largest `⟨n, x⟩`. `None` of a mesh. `skin`:
-/// they are smaller by that.
+/// Convex regions that hold a stock, by the unit normals `n` of planes and the largest `⟨n, x⟩`. `None` of a mesh.
+/// `skin`: they are smaller by that.
 #[must_use]
-pub fn regions(stock: &Stock, skin: f64) -> Option<Vec<Vec<([f64; 3], f64)>>> {
+pub fn regions(stock: &Stock, skin: f64) -> Option<Vec<Vec<Plane>>> {
     let region = |outer: Outer| match outer {
         Outer::Planes(planes) => Some(planes.into_iter().map(|(n, c)| (n.into(), c)).collect()),
         Outer::Mesh(_) => None,
@@ -131,7 +133,11 @@ impl Before {
                     if planes.iter().any(|plane| points.iter().all(|p| above(plane, p) > 0.0)) {
                         continue;
                     }
-                    let cut = |points: Points, plane| below(points, |p| above(plane, p));
+                    let cut = |points: Points, plane| match points.len() {
+                        // Each plane may make many points out of few: some of them will do.
+                        ..=MOST_POINTS => below(points, |p| above(plane, p)),
+                        _ => points,
+                    };
                     all.extend(planes.iter().take(CUT).fold(points.iter().copied().collect(), cut));
                 }
                 Outer::Mesh(distance) => {

@@ -40,8 +40,8 @@ const THIN: f64 = 4096.0;
 const SAME: f64 = 5e-10;
 
 impl Patch {
-    /// The patches of the surface around a solid: of each triangle, then of its edges with later triangles; at last those
-    /// of all corners. None where nothing is.
+    /// The patches of the surface around a solid: of each triangle, then of its edges with later triangles; at last
+    /// those of all corners. None where nothing is.
     pub fn around(triangles: &[Triangle]) -> Vec<SmallVec<[Self; 1]>> {
         let mut numbers = HashMap::new();
         let mut places: Vec<Vector3<f64>> = Vec::new();

@@ -112,8 +112,8 @@ impl<'a> Run<'a> {
         self.nodes.len() - 1
     }
 
-    /// Visits the first `count` stretches whose swept boxes meet a box, by their numbers, until one of the visits says no;
-    /// whether none did.
+    /// Visits the first `count` stretches whose swept boxes meet a box, by their numbers, until one of the visits
+    /// says no; whether none did.
     pub fn around_first(
         &self,
         count: usize,
@@ -168,7 +168,8 @@ fn reaches(solid: &Convex, ends: &[Placement], axis: Option<Vector3<f64>>, direc
     best
 }
 
-/// What a solid sweeps between placements, if no point goes farther than `bend` beyond the hull of where it is at these.
+/// What a solid sweeps between placements, if no point goes farther than `bend` beyond the hull of where it is at
+/// these.
 pub(super) fn swept(solid: &Convex, ends: &[Placement], axis: Option<Vector3<f64>>, bend: f64) -> Bounds {
     let mut bounds = Bounds {
         low: Vector3::zeros(),

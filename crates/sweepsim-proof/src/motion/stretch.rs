@@ -131,8 +131,13 @@ impl Stretch {
     }
 }
 
-/// By de Casteljau.
+/// By de Casteljau, but for the many with three coefficients.
 fn value(form: &Form, t: f64) -> Vector3<f64> {
+    if let [a, b, c] = form[..] {
+        let s = 1.0 - t;
+        let own = a * (s * s) + b * (2.0 * s * t) + c * (t * t);
+        return own.xyz() / own.w;
+    }
     let mut row = form.clone();
     for left in (1..row.len()).rev() {
         for k in 0..left {

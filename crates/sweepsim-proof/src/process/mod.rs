@@ -11,7 +11,9 @@ mod history;
 mod part;
 mod ring;
 mod samples;
+mod scene;
 mod search;
 mod visit;
 
-pub use search::{Movers, Room, Touched, Work, touched};
+pub use scene::{Movers, Room, Work};
+pub use search::{Touched, touched};

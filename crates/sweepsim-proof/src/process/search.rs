@@ -2,6 +2,7 @@
 
 use super::history::History;
 use super::samples::Turned;
+use super::scene::{Found, Movers, Room, Scene, Work};
 use super::visit::Search;
 use crate::excess::{Before, Course};
 use crate::motion::{Run, Stretch};
@@ -10,47 +11,16 @@ use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{MeshError, Stock};
 use sweepsim_solve::Monitor;
 
-/// A path of a program, with all that moves along it.
-pub struct Work<'a> {
-    /// What cuts.
-    pub cutter: Cutter<'a>,
-    /// Shanks and holders.
-    pub bodies: &'a [Convex],
-    /// Whether a move is a rapid.
-    pub is_rapid: &'a (dyn Fn(usize) -> bool + Sync),
-}
-
-/// What must touch no material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Movers {
-    /// Shanks and holders, in all moves.
-    Bodies,
-    /// Cutters, in rapids.
-    Rapids,
-}
-
-/// How much room is wanted.
-#[derive(Clone, Copy, Debug)]
-pub struct Room {
-    /// So far from all material, in millimetres; if negative, so deep in it is allowed.
-    pub distance: f64,
-    /// How far the segments of a path may be from it.
-    pub deviation: f64,
-    /// At most as many parts are looked at in the whole request.
-    pub parts: usize,
-}
-
 /// What comes too near to material.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// The moves that were seen to, each with a place, and how deep it is in material; or, with room wanted, how near to
-    /// it. With the path.
+    /// The moves that were seen to, each with a place, and how deep it is in material; or, with room wanted, how
+    /// near to it. With the path.
     pub moves: Vec<(usize, Witness)>,
     /// Where it is not known, with the path: some of these places.
     pub open: Vec<(usize, OpenBox)>,
@@ -153,27 +123,6 @@ impl Cut {
 /// Some solids along the path of a cutter, without its other courses.
 fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
     Cutter::new(solids, cutter.path, None)
-}
-
-pub(super) struct Scene<'a> {
-    pub work: &'a [Work<'a>],
-    pub solids: &'a [Vec<Convex>],
-    pub movers: Movers,
-    pub room: &'a Room,
-    pub history: History<'a>,
-    pub first: Vec<&'a [u32]>,
-    pub margin: f64,
-    /// Of the stock.
-    pub bounds: [Vector3<f64>; 2],
-}
-
-#[derive(Default)]
-pub(super) struct Found {
-    pub moves: BTreeMap<usize, Witness>,
-    pub open: Vec<OpenBox>,
-    /// How many places of each move are open.
-    pub open_counts: BTreeMap<usize, usize>,
-    pub parts: usize,
 }
 
 impl Scene<'_> {

@@ -3,7 +3,7 @@
 use super::history::Moment;
 use super::part::Part;
 use super::samples::{Samples, Turned};
-use super::search::{Found, Scene};
+use super::scene::{Found, Scene};
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;

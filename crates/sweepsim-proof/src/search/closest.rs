@@ -36,9 +36,9 @@ const LEAST_PAIRS: usize = 4_000;
 /// Coordinates of this size are exact to 1.
 const ROUNDING: f64 = 1e-12;
 
-/// Encloses how near bodies on their paths come to a solid, `limits.depth` being the distance that is asked for. A body
-/// that touches the solid, or is inside of it, has the distance 0. `recorded`: with a tree for each part of the work, by
-/// which a checker can follow the proof. `None` if the monitor cancelled the work.
+/// Encloses how near bodies on their paths come to a solid, `limits.depth` being the distance that is asked for. A
+/// body that touches the solid, or is inside of it, has the distance 0. `recorded`: with a tree for each part of
+/// the work, by which a checker can follow the proof. `None` if the monitor cancelled the work.
 #[must_use]
 pub fn closest(
     target: &Target,

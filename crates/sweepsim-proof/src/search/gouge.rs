@@ -146,6 +146,8 @@ pub struct Enclosed {
 pub(crate) const TOGETHER: usize = 64;
 /// At first, every part of the work looks at so many pairs.
 const FIRST_LOOK: usize = 512;
+/// Where there is room up to the limit, the enclosure need not be narrower than this part of it.
+const ROOM: f64 = 0.25;
 /// How deep cutters go that go too deep need not be known better than this, in parts of it.
 const ROUGHLY: f64 = 0.25;
 /// Every part of the work may look at so many pairs.
@@ -181,11 +183,13 @@ pub fn deepest(
                 0 => FIRST_LOOK,
                 _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
             },
-            width: if look < 2 {
-                limits.width
+            width: limits.width.max(if look < 2 && known < limits.depth {
+                ROOM * enough
+            } else if look < 2 {
+                0.0
             } else {
-                limits.width.max(enough)
-            },
+                enough
+            }),
             known,
             recorded,
         };

@@ -128,8 +128,8 @@ impl Trace {
         first
     }
 
-    /// The tree down to where bounds are at most a value, in bytes: empty if it was too much. `None` if it was not to be
-    /// recorded. `allowance`: of all bounds.
+    /// The tree down to where bounds are at most a value, in bytes: empty if it was too much. `None` if it was not
+    /// to be recorded. `allowance`: of all bounds.
     pub fn written(&self, bound: f64, allowance: f64) -> Option<Vec<u8>> {
         let mut written = Writer::default();
         let mut open = vec![0_u32];

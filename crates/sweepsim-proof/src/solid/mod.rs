@@ -2,10 +2,12 @@
 
 mod cell;
 mod faults;
+mod outside;
 mod polygon;
 mod way;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near, is_outside};
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near};
+pub(crate) use outside::is_outside;
 pub(crate) use way::{Normal, Triangle, Way, Written};
 
 pub use faults::Fault;

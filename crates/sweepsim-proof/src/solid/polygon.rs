@@ -3,6 +3,13 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
+/// Part of a triangle: a convex polygon.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    pub triangle: u32,
+    pub corners: SmallVec<[Vector3<f64>; 4]>,
+}
+
 /// The area.
 pub(super) fn area(corners: &[Vector3<f64>]) -> f64 {
     let fan = corners.windows(2).skip(1);

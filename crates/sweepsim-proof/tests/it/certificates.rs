@@ -1,8 +1,8 @@
 //! Certificates of scenes with a known answer, and whatever may be done to them.
 
 use crate::scenes::waves;
+use crate::trees::{after, nodes};
 use crate::walls::{LIMITS, cut, slot};
-use std::collections::BTreeSet;
 use sweepsim_check::{
     Certificate, Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, check, digest_of, packed,
 };
@@ -246,59 +246,6 @@ fn no_tree_proves_too_little() {
         }
     }
     assert!(refused > 2 * bytes.len(), "{refused} of {}", 5 * bytes.len());
-}
-
-/// Where the node ends that begins somewhere in a tree.
-fn after(bytes: &[u8], at: usize) -> Option<usize> {
-    Some(match *bytes.get(at)? {
-        0 => after(bytes, after(bytes, at + 1)?)?,
-        1 => {
-            let count = bytes.get(at + 1)?.count_ones();
-            let mut end = at + 2;
-            for _ in 0..count {
-                end = after(bytes, end)?;
-            }
-            end
-        }
-        kind => {
-            let normals = [0, 0, 0, 0, 0, 1, 1, 2, 3, 2][usize::from(kind)];
-            let mut end = at + 1;
-            for _ in 0..normals {
-                let number = end;
-                end = last(bytes, end);
-                match bytes[number] {
-                    0 => end += 12,
-                    1 => end = last(bytes, end),
-                    _ => {}
-                }
-            }
-            end
-        }
-    })
-}
-
-/// The end of a number.
-fn last(bytes: &[u8], at: usize) -> usize {
-    at + 1 + bytes[at..].iter().take_while(|byte| **byte >= 0x80).count()
-}
-
-/// Where nodes begin.
-fn nodes(bytes: &[u8]) -> BTreeSet<usize> {
-    let (mut all, mut open) = (BTreeSet::new(), vec![0]);
-    while let Some(at) = open.pop() {
-        all.insert(at);
-        let count = match bytes[at] {
-            0 => 2,
-            1 => bytes[at + 1].count_ones(),
-            _ => 0,
-        };
-        let mut next = at + 1 + usize::from(bytes[at]);
-        for _ in 0..count {
-            open.push(next);
-            next = after(bytes, next).expect("a node");
-        }
-    }
-    all
 }
 
 #[test]

@@ -5,4 +5,5 @@ mod certificates;
 mod process;
 mod scenes;
 mod standing;
+mod trees;
 mod walls;

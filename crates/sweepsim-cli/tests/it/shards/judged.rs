@@ -93,7 +93,7 @@ fn compare(folder: &Workdir, more: &[&str], counts: &[usize], status: i32) -> Re
 #[test]
 fn shards_find_what_one_run_finds() {
     let folder = faulty();
-    let more = ["--moves", "--only", "dexels,mesh,picture,report,binary"];
+    let more = ["--moves", "--only", "dexels,mesh,picture,report,binary,certificate"];
     let report = compare(&folder, &more, &[1, 2, 7], 1);
     let findings = report.findings.unwrap();
     for (kind, body) in [

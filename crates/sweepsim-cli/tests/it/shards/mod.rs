@@ -46,7 +46,7 @@ fn assert_same(folder: &Workdir, whole: &str, merged: &str) {
     for name in names(whole) {
         let [a, b] = [whole, merged].map(|of| read(of, &name));
         match Path::new(&name).extension().and_then(|e| e.to_str()) {
-            Some("json") => {
+            Some("json") if name != "certificate.json" => {
                 let report = |bytes: &[u8]| {
                     let mut report: serde_json::Value = serde_json::from_slice(bytes).unwrap();
                     assert!(report.as_object_mut().unwrap().remove("seconds").is_some());

@@ -3,8 +3,8 @@
 mod bodies;
 mod excess;
 mod process;
-pub(super) mod solids;
 
+use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;

@@ -12,7 +12,7 @@ const CHORDS: f64 = 0.005;
 const SIDES: f64 = 720.0;
 
 /// A solid between triangles, or why it is none. `what`: its name.
-pub(super) fn of_mesh(mesh: &TriangleSoup, what: &str) -> Result<Target, String> {
+pub(in crate::verify) fn of_mesh(mesh: &TriangleSoup, what: &str) -> Result<Target, String> {
     let solid = Target::new(mesh).map_err(|error| format!("{what} is no solid: {error}"))?;
     if mesh.volume() <= 0.0 {
         return Err(format!("{what} is inside out"));

@@ -1,6 +1,7 @@
 //! What is asked of proofs: statements, limits, widths, budgets, and what moves along which paths.
 
-use super::proof::solids;
+pub(super) mod solids;
+
 use super::targets;
 use crate::request::Request;
 use std::collections::BTreeMap;

@@ -1,0 +1,136 @@
+//! A small certificate of all statements, and whatever may be done to it.
+
+use crate::walls::{PROGRAM, slotted};
+use std::fs;
+use std::path::PathBuf;
+use sweepsim_check::{Certificate, digest_of};
+use sweepsim_job::{Measure, Request, check};
+use tempfile::TempDir;
+
+const JOB: &str = r#"Job(
+    grid: Grid(min: (0, 0), max: (60, 40), cells: (30, 20)),
+    stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
+    tools: {1: Flat(radius: 5, length: 30)},
+    bodies: {1: [Holder(Profile(start: (0, 30), segments: [Line((12, 30)), Line((12, 50)), Line((0, 50))]))]},
+    fixtures: [Block(min: (-20, 30, -10), max: (-5, 40, 5))],
+    paths: [Path(tool: 1, file: "slot.nc")],
+    clearance: 1.0,
+    target: Mesh("target.stl"),
+    limits: Limits(gouge: 0.02, excess: 0.02),
+)"#;
+
+/// A folder with a job, and the certificate of it there.
+fn certified() -> (TempDir, PathBuf, Vec<u8>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = slotted([15.0, 25.0], -4.0);
+    let corner = |p: &[f64; 3]| format!("vertex {} {} {}\n", p[0], p[1], p[2]);
+    let facet = |corners: &[[f64; 3]; 3]| {
+        let corners: String = corners.iter().map(corner).collect();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    let facets: String = target.triangles.iter().map(facet).collect();
+    fs::write(
+        folder.path().join("target.stl"),
+        format!("solid t\n{facets}endsolid t\n"),
+    )
+    .expect("written");
+    fs::write(folder.path().join("slot.nc"), PROGRAM).expect("written");
+    let job = folder.path().join("job.ron");
+    fs::write(&job, JOB).expect("written");
+    let outcome = Request::from_file(&job)
+        .plan()
+        .expect("a plan")
+        .run(&())
+        .expect("a result");
+    let text = outcome.certificate().expect("a notation").expect("something is proven");
+    let file = folder.path().join("certificate.json");
+    fs::write(&file, &text).expect("written");
+    (folder, file, text.into_bytes())
+}
+
+#[test]
+fn every_changed_byte_of_all_statements_is_refused() {
+    let (folder, file, text) = certified();
+    let found = check(&file, 1).expect("a certificate");
+    let all: Vec<_> = found
+        .statements
+        .iter()
+        .map(|own| (own.about.as_str(), own.measure, own.limit < 0.0))
+        .collect();
+    let expected = [
+        ("gouge", Measure::Depth, false),
+        ("excess", Measure::Height, false),
+        ("holder", Measure::Depth, true),
+        ("fixture", Measure::Depth, false),
+        ("fixture", Measure::Depth, true),
+    ];
+    assert_eq!(all, expected);
+    assert!(found.holds(), "{found:?}");
+    assert!(text.len() < 40_000, "{}", text.len());
+
+    for number in 0..text.len() {
+        let mut changed = text.clone();
+        changed[number] ^= 1 + (number % 255) as u8;
+        assert!(Certificate::read(&changed).is_err(), "byte {number}");
+    }
+    // With a digest that fits, what is accepted is still true: the holder stays 26 mm above the target, and 5 mm
+    // and more beside the clamp.
+    let end = text.len() - ",\"digest\":\"\"}\n".len() - 64;
+    let changed_file = folder.path().join("changed.json");
+    let (mut refused, mut accepted) = (0, 0);
+    for number in (0..end).step_by(41) {
+        let mut changed = text[..end].to_vec();
+        changed[number] ^= 1 + (number % 7) as u8;
+        let digest = digest_of(&changed);
+        changed.extend(format!(",\"digest\":\"{digest}\"}}\n").into_bytes());
+        fs::write(&changed_file, &changed).expect("written");
+        match check(&changed_file, 1) {
+            Ok(found) if found.holds() => {
+                accepted += 1;
+                for own in &found.statements {
+                    let (bound, _) = own.claimed.expect("a claim");
+                    let truth = match (own.about.as_str(), own.limit < 0.0) {
+                        ("holder", _) => -26.0,
+                        (_, true) => -21.0,
+                        _ => 0.0,
+                    };
+                    assert!(bound >= truth, "byte {number}: {own:?}");
+                }
+            }
+            _ => refused += 1,
+        }
+    }
+    assert!(refused > 10 * accepted && refused > 100, "{refused} {accepted}");
+}
+
+#[test]
+fn other_files_and_options_are_refused() {
+    let (folder, file, text) = certified();
+    for (from, to) in [
+        ("clearance: 1.0", "clearance: 1.5"),
+        ("gouge: 0.02", "gouge: 0.03"),
+        ("excess: 0.02", "excess: 0.03"),
+        ("max: (-5, 40, 5)", "max: (-5, 40, 5.001)"),
+        ("Line((12, 50))", "Line((12, 50.5))"),
+        ("max: (60, 40, 0))", "max: (60, 40, 0.001))"),
+    ] {
+        assert!(JOB.contains(from), "{from}");
+        fs::write(folder.path().join("job.ron"), JOB.replacen(from, to, 1)).expect("written");
+        let said = check(&file, 1).expect_err("another job").to_string();
+        assert!(said.contains("does not belong to these files"), "{from}: {said}");
+    }
+    // Whatever is said of its files: what the statements are about is another.
+    let certificate = Certificate::read(&text).expect("a certificate");
+    let other = Certificate::new(
+        certificate.made_by,
+        certificate.request,
+        Vec::new(),
+        certificate.scene,
+        certificate.claims,
+    );
+    fs::write(&file, other.written().expect("a notation")).expect("written");
+    let said = check(&file, 1).expect_err("another job").to_string();
+    assert!(said.contains("does not belong to these files"), "{said}");
+    fs::write(folder.path().join("job.ron"), JOB).expect("written");
+    assert!(check(&file, 1).expect("the same job").holds());
+}
