@@ -4,15 +4,18 @@
 //! face's normal; on an edge, the sum of the normals of its two faces; at a vertex, the sum of those around it, each
 //! weighted by its angle there. This gives the right sign for every closed surface that does not intersect itself, even
 //! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
-//! Pseudonormal*, 2005).
+//! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch, a ray tells the side.
 
 use super::parts::{self, TrianglePart};
 use super::{MeshError, TriangleSoup};
 use crate::vector::{cross, dot, sub};
+use smallvec::SmallVec;
 use std::collections::HashMap;
 
 /// Triangles of a leaf of the tree.
 const LEAF: usize = 4;
+/// Squares of distances that differ by no more than this part are the same.
+const SAME: f64 = 1e-12;
 
 /// A triangle surface, prepared for distance queries.
 ///
@@ -28,11 +31,11 @@ const LEAF: usize = 4;
 /// ```
 #[derive(Clone, Debug)]
 pub struct DistanceTo {
-    vertices: Vec<[f64; 3]>,
-    faces: Vec<Face>,
+    pub(super) vertices: Vec<[f64; 3]>,
+    pub(super) faces: Vec<Face>,
     /// The faces of the leaves, one leaf after another; a face is in several if it has been looked at in parts.
-    order: Vec<u32>,
-    nodes: Vec<TreeNode>,
+    pub(super) order: Vec<u32>,
+    pub(super) nodes: Vec<TreeNode>,
 }
 
 /// The point of a surface nearest to a given point.
@@ -68,25 +71,25 @@ impl NearestTriangle {
 }
 
 #[derive(Clone, Debug)]
-struct Face {
-    corners: [u32; 3],
-    normal: [f64; 3],
+pub(super) struct Face {
+    pub corners: [u32; 3],
+    pub normal: [f64; 3],
     /// Pseudonormals at the corners, and at the edges from each corner to the next; of any length.
     at_corners: [[f32; 3]; 3],
     at_edges: [[f32; 3]; 3],
 }
 
 #[derive(Clone, Debug)]
-struct TreeNode {
-    low: [f64; 3],
-    high: [f64; 3],
+pub(super) struct TreeNode {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
     /// The places `first..first + count` in the order of faces; of an inner node the second child is at `first`, the
     /// first right behind it.
-    first: u32,
-    count: u32,
+    pub first: u32,
+    pub count: u32,
 }
 
-fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
+pub(super) fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
@@ -139,26 +142,6 @@ impl TreeNode {
         (0..3)
             .map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2))
             .sum()
-    }
-}
-
-impl TreeNode {
-    /// Whether a ray may meet the box nearer than `reach`.
-    fn meets(&self, p: [f64; 3], direction: [f64; 3], reach: f64) -> bool {
-        let (mut from, mut to) = (0.0_f64, reach);
-        for k in 0..3 {
-            if direction[k] == 0.0 {
-                if p[k] < self.low[k] || p[k] > self.high[k] {
-                    return false;
-                }
-                continue;
-            }
-            let ends = [self.low[k], self.high[k]].map(|end| (end - p[k]) / direction[k]);
-            from = from.max(ends[0].min(ends[1]));
-            to = to.min(ends[0].max(ends[1]));
-        }
-        // Boxes of flat faces have no thickness.
-        from <= to * (1.0 + 1e-12)
     }
 }
 
@@ -285,32 +268,46 @@ impl DistanceTo {
     }
 
     fn search(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<Nearest> {
-        let (number, place, part) = self.closest(p, reach, wanted)?;
-        let face = &self.faces[number];
-        let side = match part {
-            NearestOn::Inside => face.normal,
-            NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
-            NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
-        };
+        let mut as_near = SmallVec::new();
+        let (number, place, part) = self.closest(p, (reach, wanted), &mut as_near)?;
         let off = sub(p, place);
-        let (away, outside) = (dot(off, off).sqrt(), dot(off, side) >= 0.0);
+        let is_outside = |(number, part): (usize, NearestOn)| {
+            let face = &self.faces[number];
+            let side = match part {
+                NearestOn::Inside => face.normal,
+                NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
+                NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
+            };
+            dot(off, side) >= 0.0
+        };
+        let mut outside = is_outside((number, part));
+        // Where triangles lie on each other, the side is on neither of them.
+        if as_near.into_iter().any(|other| is_outside(other) != outside) {
+            outside = self.winding(p).map_or(outside, |winding| winding <= 0);
+        }
+        let away = dot(off, off).sqrt();
         Some(Nearest {
             distance: if outside { away } else { -away },
             place,
-            normal: face.normal,
+            normal: self.faces[number].normal,
         })
     }
 
-    /// The number of the face nearest to `p`, and the point of it.
-    fn closest(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<(usize, [f64; 3], NearestOn)> {
+    /// The number of the face nearest to `p` within a reach, and the point of it; others may be as near.
+    fn closest(
+        &self,
+        p: [f64; 3],
+        (reach, wanted): (f64, impl Fn(&Face) -> bool),
+        as_near: &mut SmallVec<[(usize, NearestOn); 8]>,
+    ) -> Option<(usize, [f64; 3], NearestOn)> {
         let mut best = reach * reach;
         let mut found: Option<(usize, [f64; 3], NearestOn)> = None;
         // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
-        let mut open = smallvec::SmallVec::<[(f64, u32); 64]>::new();
+        let mut open = SmallVec::<[(f64, u32); 64]>::new();
         open.extend(self.nodes.first().map(|root| (root.distance_squared(p), 0)));
         while let Some((away, number)) = open.pop() {
             // Not less: nothing to find, or a NaN.
-            if !(away <= best) {
+            if !(away <= best * (1.0 + SAME)) {
                 continue;
             }
             let node = &self.nodes[number as usize];
@@ -330,9 +327,12 @@ impl DistanceTo {
                 let (place, part) = nearest_on(p, face.corners.map(|v| self.vertices[v as usize]));
                 let off = sub(p, place);
                 let square = dot(off, off);
-                if square < best || (square == best && found.is_none()) {
+                if square < best * (1.0 - SAME) || (square <= best && found.is_none()) {
+                    as_near.clear();
                     best = square;
                     found = Some((*number as usize, place, part));
+                } else if square <= best * (1.0 + SAME) && found.is_some() {
+                    as_near.push((*number as usize, part));
                 }
             }
         }
@@ -343,7 +343,7 @@ impl DistanceTo {
     /// of a plane through it that the triangle beyond shares, pointing inwards.
     #[must_use]
     pub fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
-        let (number, place, _) = self.closest(p, f64::INFINITY, |_| true)?;
+        let (number, place, _) = self.closest(p, (f64::INFINITY, |_: &Face| true), &mut SmallVec::new())?;
         let face = &self.faces[number];
         let corners = face.corners.map(|v| self.vertices[v as usize]);
         let off = sub(p, place);
@@ -352,44 +352,6 @@ impl DistanceTo {
             corners,
             inwards: [0, 1, 2].map(|k| cross(face.at_edges[k].map(f64::from), sub(corners[(k + 1) % 3], corners[k]))),
         })
-    }
-
-    /// The distance from `p` along the unit vector `direction` to the first triangle, if it is farther than `least`.
-    #[must_use]
-    pub(super) fn first_hit(&self, p: [f64; 3], direction: [f64; 3], least: f64) -> Option<f64> {
-        let mut best = f64::INFINITY;
-        let mut open = smallvec::SmallVec::<[u32; 64]>::new();
-        open.extend(self.nodes.first().map(|_| 0));
-        while let Some(number) = open.pop() {
-            let node = &self.nodes[number as usize];
-            if !node.meets(p, direction, best) {
-                continue;
-            }
-            if node.count == 0 {
-                open.extend([node.first, number + 1]);
-                continue;
-            }
-            for number in &self.order[node.first as usize..(node.first + node.count) as usize] {
-                let face = &self.faces[*number as usize];
-                let corners = face.corners.map(|v| self.vertices[v as usize]);
-                let slope = dot(face.normal, direction);
-                let away = dot(face.normal, sub(corners[0], p)) / slope;
-                if slope == 0.0 || !(away > least && away < best) {
-                    continue;
-                }
-                let hit = along(p, away, direction);
-                // Rather in both triangles of an edge than in neither.
-                let inside = |k: usize| {
-                    let (side, to) = (sub(corners[(k + 1) % 3], corners[k]), sub(hit, corners[k]));
-                    let slack = 1e-9 * dot(side, side).sqrt() * dot(to, to).sqrt();
-                    dot(cross(side, to), face.normal) >= -slack
-                };
-                if (0..3).all(inside) {
-                    best = away;
-                }
-            }
-        }
-        best.is_finite().then_some(best)
     }
 }
 

@@ -157,7 +157,7 @@ fn a_shaft_takes_few_triangles_a_point() {
                 looked.set(looked.get() + 1);
                 true
             };
-            let (_, place, _) = tree.closest(p, f64::INFINITY, count).unwrap();
+            let (_, place, _) = tree.closest(p, (f64::INFINITY, count), &mut SmallVec::new()).unwrap();
             let square = |t: &[[f64; 3]; 3]| {
                 let off = sub(p, nearest_on(p, *t).0);
                 dot(off, off)
@@ -170,4 +170,32 @@ fn a_shaft_takes_few_triangles_a_point() {
     };
     let most = [aslant, along_x].map(looks);
     assert!(most.iter().all(|looked| *looked < 400 * 100), "{most:?}");
+}
+
+/// Solids that touch, a slit and a flap without thickness: two triangles are as near, on both sides of which there is the
+/// same.
+#[test]
+fn sides_are_right_where_triangles_lie_on_each_other() {
+    // Two blocks that touch in a part of a face are one solid.
+    let boxes = [[[0.0; 3], [2.0, 3.0, 4.0]], [[2.0, 0.5, 0.5], [3.0, 2.5, 3.5]]];
+    let mut triangles: Vec<[[f64; 3]; 3]> = boxes
+        .iter()
+        .flat_map(|[min, max]| block(*min, *max).triangles)
+        .collect();
+    // A flap upon the first.
+    let flap = [[1.0, 1.0, 4.0], [1.0, 2.0, 4.0], [1.0, 1.5, 7.0]];
+    triangles.extend([flap, [flap[0], flap[2], flap[1]]]);
+    let tree = DistanceTo::new(&TriangleSoup { triangles }).unwrap();
+    let mut counts = [0; 2];
+    for n in 0..20_usize.pow(3) {
+        let p = [n % 20, n / 20 % 20, n / 400].map(|k| (k as f64 - 3.3) * 0.31);
+        let inside = boxes
+            .iter()
+            .any(|[min, max]| (0..3).all(|k| p[k] > min[k] && p[k] < max[k]));
+        let near = tree.nearest(p).unwrap();
+        assert_eq!(near.distance < 0.0, inside, "{p:?}: {near:?}");
+        let shared = (near.place[0] - 2.0).abs() < 1e-12 || (near.place[0] - 1.0).abs() < 1e-12;
+        counts[usize::from(inside)] += i32::from(shared);
+    }
+    assert!(counts[0] > 100 && counts[1] > 100, "{counts:?}");
 }

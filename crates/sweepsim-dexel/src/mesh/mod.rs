@@ -6,6 +6,7 @@ mod distance;
 mod furthest;
 mod near;
 mod parts;
+mod rays;
 mod thicken;
 
 use crate::grid::Frame;
