@@ -159,6 +159,8 @@ enum Table {
 /// What is predicted.
 #[derive(Clone, Copy, ValueEnum)]
 enum Prediction {
+    /// The sizes of the plate.
+    Size,
     /// The times of a program's blocks.
     Time,
 }

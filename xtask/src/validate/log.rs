@@ -8,6 +8,9 @@ use std::path::Path;
 /// How often the agent looks, in seconds.
 pub const POLLED: f64 = 0.17;
 
+/// Overrides count that were logged at most so many seconds before a run.
+const SINCE: f64 = 3600.0;
+
 /// What a log says of one run of a program; times are in seconds.
 #[derive(Debug, Default)]
 pub struct Run {
@@ -51,7 +54,8 @@ impl Run {
         let run: Vec<_> = run.iter().copied().filter(|(_, line)| *line > 0).collect();
         let span = run[0].0 - 1.0..=run[run.len() - 1].0;
         let mut overrides = of("Rapid_Override");
-        overrides.retain(|(time, _)| time <= span.end());
+        // A log is of one part: what was set for parts in between is in others.
+        overrides.retain(|(time, _)| (span.start() - SINCE..=*span.end()).contains(time));
         let mut speeds = of("Feed_Rate");
         speeds.retain(|(time, _)| span.contains(time));
         Ok(Self {

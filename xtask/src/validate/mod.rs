@@ -2,6 +2,8 @@
 
 mod log;
 mod model;
+mod qif;
+mod size;
 mod time;
 
 use crate::{Prediction, workspace};
@@ -14,6 +16,7 @@ pub fn run(what: Prediction) -> Result<(), String> {
         return Ok(());
     }
     match what {
+        Prediction::Size => size::run(&shop).map(|text| println!("{text}")),
         Prediction::Time => {
             let (text, plot) = time::run(&shop)?;
             println!("{text}");

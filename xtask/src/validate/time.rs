@@ -248,19 +248,6 @@ pub fn run(folder: &Path) -> Result<(String, String), String> {
                 case.blocks.lines[line - 1]
             );
         }
-        for row in &rows {
-            if row.single && row.logged > LONG && !row.held() && (row.predicted - row.logged).abs() > 0.1 * row.logged {
-                eprintln!(
-                    "{} {} {} log {:.2} pred {:.2} still {:.2}",
-                    case.name,
-                    row.line,
-                    case.blocks.lines[row.line - 1],
-                    row.logged,
-                    row.predicted,
-                    row.standing
-                );
-            }
-        }
         panels.push(panel(case.name, &rows));
     }
     let text = format!("{text}\n{held}");
