@@ -45,9 +45,9 @@ impl Run {
             .iter()
             .map(|(t, line)| (*t, *line as usize))
             .collect();
-        let runs = blocks.chunk_by(|a, b| b.1 > a.1);
+        let mut runs = blocks.chunk_by(|a, b| b.1 > a.1);
         let near = |run: &&[(f64, usize)]| run.last().is_some_and(|(_, line)| line.abs_diff(last) <= 1);
-        let run = runs.filter(near).next_back();
+        let run = runs.rfind(near);
         let Some(run) = run else {
             return Err(format!("{}: no run ends at line {last}", file.display()));
         };

@@ -71,10 +71,13 @@ const SLOTS: [(&str, f64, [f64; 2], f64); 3] = [
 ];
 const SINKS: [[f64; 2]; 4] = [[18.27, 5.5], [18.27, 65.66], [101.73, 5.5], [101.73, 65.66]];
 
+/// A block: its line, places that its tool passes, and the tool's radius.
+type Way = (usize, Vec<[f64; 2]>, f64);
+
 struct Shop<'a> {
     program: &'a Path,
-    /// How far each block reaches: its line, and places that its tool passes, with the tool's radius.
-    ways: Vec<(usize, Vec<[f64; 2]>, f64)>,
+    /// Where the tool of each block goes.
+    ways: Vec<Way>,
 }
 
 impl Shop<'_> {
@@ -167,7 +170,7 @@ fn solid(plate: &Dexels, i: usize, j: usize, depth: f64) -> bool {
 }
 
 /// The places that each block's tool passes, in the model's coordinates.
-fn ways(program: &Path) -> Result<Vec<(usize, Vec<[f64; 2]>, f64)>, String> {
+fn ways(program: &Path) -> Result<Vec<Way>, String> {
     let mut options = ReadOptions::default();
     options.arc_tolerance = 1e-4;
     let program = read_file(program, &options).map_err(|error| error.to_string())?;
