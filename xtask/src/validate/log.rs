@@ -1,7 +1,7 @@
 //! Logs of a Hurco mill as the MTConnect agent of NIST's test bed wrote them: `time|name|value`.
 //!
-//! `Block_Number` is the line of the program that runs, polled about six times a second, so that short blocks are missing and
-//! each time is late by up to 0.17 s. `Feed_Rate` is the speed of the tool in mm/s.
+//! `Block_Number` is the line of the program that runs, polled about six times a second, so that short blocks are
+//! missing and each time is late by up to 0.17 s. `Feed_Rate` is the speed of the tool in mm/s.
 
 use std::path::Path;
 

@@ -8,7 +8,8 @@ mod time;
 
 use crate::{Prediction, workspace};
 
-/// Compares predictions with the shop's data, prints tables and draws the plots of docs/validation.md. Says so where the data are absent.
+/// Compares predictions with the shop's data, prints tables and draws the plots of docs/validation.md. Says so where
+/// the data are absent.
 pub fn run(what: Prediction) -> Result<(), String> {
     let shop = workspace::root().join("../shared/data/shop/nist_smstestbed");
     if !shop.is_dir() {

@@ -8,8 +8,8 @@ use sweepsim_dexel::Dexels;
 use sweepsim_job::{Request, Task};
 use sweepsim_nc::{ReadOptions, read_file};
 
-/// The shop clamps the plate turned by 180 degrees about z: a point of the program is this less a point of the model. The outline says how far
-/// that is off.
+/// The shop clamps the plate turned by 180 degrees about z: a point of the program is this less a point of the model.
+/// The outline says how far that is off.
 const TURNED: [f64; 2] = [123.175, -2.412];
 /// Radii of the flat end mills by tool, as the program's comments say; T7 and T23 are spot drills of 90 degrees.
 const FLAT: [(u32, f64); 5] = [(15, 38.1), (3, 6.35), (4, 3.175), (5, 1.5875), (1, 1.1811)];
@@ -122,7 +122,8 @@ impl Shop<'_> {
         Ok((2.0 * free as f64 * step * step / (sector[1] - sector[0]).to_radians()).sqrt())
     }
 
-    /// Where a line along x or y of the model at half the thickness is free or solid: the least and the largest place that is.
+    /// Where a line along x or y of the model at half the thickness is free or solid: the least and the largest place
+    /// that is.
     fn extent(&self, axis: usize, across: f64, range: [f64; 2], wanted_solid: bool) -> Result<[f64; 2], String> {
         let (mut low, mut high, mut cells) = ([across - 0.01; 2], [across + 0.01; 2], [1; 2]);
         (low[axis], high[axis], cells[axis]) = (range[0], range[1], FINE);
