@@ -4,7 +4,7 @@ use crate::support::Workdir;
 use std::fs;
 use sweepsim_formats::read_mesh_file;
 
-/// A tetrahedron in centimetres, as a STEP file: what is in it, and its triangles. One that is damaged is an error about the file.
+/// A tetrahedron in centimetres, as a STEP file: what is in it, and its triangles. A damaged one is an error.
 #[test]
 fn step_files_are_described_and_become_meshes() {
     let workdir = Workdir::new("");
