@@ -72,7 +72,8 @@ enum Command {
         #[arg(long)]
         fine: bool,
     },
-    /// Compares what is predicted with what a shop logged and measured, and draws the plots of docs/validation.md; needs the shared data.
+    /// Compares what is predicted with what a shop logged and measured, and draws the plots of docs/validation.md;
+    /// needs the shared data.
     Validate {
         /// What to compare.
         what: Prediction,
@@ -113,8 +114,9 @@ enum Command {
         #[arg(long)]
         screenshots: bool,
     },
-    /// Runs a job in shards on a Slurm of one node, as docs/cluster.md describes it: one task is killed on the way, and
-    /// the result compared with one run. Needs Debian's packages slurmctld, slurmd, slurm-client and munge, and root.
+    /// Runs a job in shards on a Slurm of one node, as docs/cluster.md describes it: one task is killed on the way,
+    /// and the result compared with one run. Needs Debian's packages slurmctld, slurmd, slurm-client and munge, and
+    /// root.
     Cluster,
     /// Measures single shards of large runs, up to 10,000 x 10,000 dexels and 10,000,000 moves, one after the other:
     /// takes half an hour, 8 GiB of memory and 2 GB in the target folder. Plots them in docs/pictures/shards.svg.
@@ -159,6 +161,8 @@ enum Table {
 /// What is predicted.
 #[derive(Clone, Copy, ValueEnum)]
 enum Prediction {
+    /// The sizes of the plate.
+    Size,
     /// The times of a program's blocks.
     Time,
 }

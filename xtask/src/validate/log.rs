@@ -1,12 +1,15 @@
 //! Logs of a Hurco mill as the MTConnect agent of NIST's test bed wrote them: `time|name|value`.
 //!
-//! `Block_Number` is the line of the program that runs, polled about six times a second, so that short blocks are missing and
-//! each time is late by up to 0.17 s. `Feed_Rate` is the speed of the tool in mm/s.
+//! `Block_Number` is the line of the program that runs, polled about six times a second, so that short blocks are
+//! missing and each time is late by up to 0.17 s. `Feed_Rate` is the speed of the tool in mm/s.
 
 use std::path::Path;
 
 /// How often the agent looks, in seconds.
 pub const POLLED: f64 = 0.17;
+
+/// Overrides count that were logged at most so many seconds before a run.
+const SINCE: f64 = 3600.0;
 
 /// What a log says of one run of a program; times are in seconds.
 #[derive(Debug, Default)]
@@ -42,16 +45,17 @@ impl Run {
             .iter()
             .map(|(t, line)| (*t, *line as usize))
             .collect();
-        let runs = blocks.chunk_by(|a, b| b.1 > a.1);
+        let mut runs = blocks.chunk_by(|a, b| b.1 > a.1);
         let near = |run: &&[(f64, usize)]| run.last().is_some_and(|(_, line)| line.abs_diff(last) <= 1);
-        let run = runs.filter(near).next_back();
+        let run = runs.rfind(near);
         let Some(run) = run else {
             return Err(format!("{}: no run ends at line {last}", file.display()));
         };
         let run: Vec<_> = run.iter().copied().filter(|(_, line)| *line > 0).collect();
         let span = run[0].0 - 1.0..=run[run.len() - 1].0;
         let mut overrides = of("Rapid_Override");
-        overrides.retain(|(time, _)| time <= span.end());
+        // A log is of one part: what was set for parts in between is in others.
+        overrides.retain(|(time, _)| (span.start() - SINCE..=*span.end()).contains(time));
         let mut speeds = of("Feed_Rate");
         speeds.retain(|(time, _)| span.contains(time));
         Ok(Self {

@@ -2,11 +2,14 @@
 
 mod log;
 mod model;
+mod qif;
+mod size;
 mod time;
 
 use crate::{Prediction, workspace};
 
-/// Compares predictions with the shop's data, prints tables and draws the plots of docs/validation.md. Says so where the data are absent.
+/// Compares predictions with the shop's data, prints tables and draws the plots of docs/validation.md. Says so where
+/// the data are absent.
 pub fn run(what: Prediction) -> Result<(), String> {
     let shop = workspace::root().join("../shared/data/shop/nist_smstestbed");
     if !shop.is_dir() {
@@ -14,6 +17,7 @@ pub fn run(what: Prediction) -> Result<(), String> {
         return Ok(());
     }
     match what {
+        Prediction::Size => size::run(&shop).map(|text| println!("{text}")),
         Prediction::Time => {
             let (text, plot) = time::run(&shop)?;
             println!("{text}");

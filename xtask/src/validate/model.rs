@@ -1,4 +1,5 @@
-//! How long the blocks of a program take on the Hurco: the project's own times of moves, and constants for what is no move.
+//! How long the blocks of a program take on the Hurco: the project's own times of moves, and constants for what is no
+//! move.
 
 use super::log::Run;
 use std::collections::BTreeMap;
@@ -11,8 +12,8 @@ const RAPID: f64 = 338.67 * 60.0;
 /// The end of the dial of feed overrides.
 const DIAL: f64 = 1.5;
 
-/// What blocks do besides, and whether it is a rapid to or from places in machine coordinates, which are not in the program: those are as
-/// slow as the rapid override makes them.
+/// What blocks do besides, and whether it is a rapid to or from places in machine coordinates, which are not in the
+/// program: those are as slow as the rapid override makes them.
 pub const WAITS: [(&str, bool); 8] = [
     ("change of tool", false),
     ("start of the spindle", false),
@@ -99,8 +100,9 @@ impl Blocks {
         each.collect()
     }
 
-    /// The feed override of each operation, from the logged speeds: the 80th percentile over its longer blocks of the speed
-    /// in the middle of a block, as a share of the feed, in steps of the dial of 5 %. An operation without long blocks has that of the one before.
+    /// The feed override of each operation, from the logged speeds: the 80th percentile over its longer blocks of the
+    /// speed in the middle of a block, as a share of the feed, in steps of the dial of 5 %. An operation without long
+    /// blocks has that of the one before.
     pub fn overrides(&self, run: &Run, ideal: &BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
         let feeds = self.feeds();
         let starts = self.operations();
@@ -132,8 +134,8 @@ impl Blocks {
         found
     }
 
-    /// Seconds of the moves of each line, as times of feeds and of rapids: feeds changed by the override of their operation, rapids by
-    /// another one.
+    /// Seconds of the moves of each line, as times of feeds and of rapids: feeds changed by the override of their
+    /// operation, rapids by another one.
     pub fn moves(
         &self,
         fit: &Fit,

@@ -38,8 +38,8 @@ impl Row {
     }
 }
 
-/// The text of a program as the shop ran it. The logs of the plate say that the spot drill came first: T7 is in the spindle during
-/// blocks 12 to 22, where the file has it after T1.
+/// The text of a program as the shop ran it. The logs of the plate say that the spot drill came first: T7 is in the
+/// spindle during blocks 12 to 22, where the file has it after T1.
 fn blocks(folder: &Path, name: &str) -> Result<Blocks, String> {
     let text = std::fs::read_to_string(folder.join(name)).map_err(|error| format!("{name}: {error}"))?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -177,7 +177,8 @@ fn fitted(case: &Case) -> Result<Fit, String> {
 struct Score {
     logged: f64,
     predicted: f64,
-    /// Of single blocks beyond a second that were not held: how many, and the 50th and 90th percentile of the relative error.
+    /// Of single blocks beyond a second that were not held: how many, and the 50th and 90th percentile of the relative
+    /// error.
     long: usize,
     percentiles: [f64; 2],
     held: Vec<(usize, f64)>,
@@ -204,7 +205,8 @@ fn score(rows: &[Row]) -> Score {
     }
 }
 
-/// Fits the machine on the first log, judges it on all, prints the table and draws the plot. Returns the table and the plot.
+/// Fits the machine on the first log, judges it on all, prints the table and draws the plot. Returns the table and the
+/// plot.
 pub fn run(folder: &Path) -> Result<(String, String), String> {
     let cases: Vec<Case> = LOGS
         .iter()
@@ -247,19 +249,6 @@ pub fn run(folder: &Path) -> Result<(String, String), String> {
                 "  - held {seconds:.1} s in block {line}: `{}`",
                 case.blocks.lines[line - 1]
             );
-        }
-        for row in &rows {
-            if row.single && row.logged > LONG && !row.held() && (row.predicted - row.logged).abs() > 0.1 * row.logged {
-                eprintln!(
-                    "{} {} {} log {:.2} pred {:.2} still {:.2}",
-                    case.name,
-                    row.line,
-                    case.blocks.lines[row.line - 1],
-                    row.logged,
-                    row.predicted,
-                    row.standing
-                );
-            }
         }
         panels.push(panel(case.name, &rows));
     }

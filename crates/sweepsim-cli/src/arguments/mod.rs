@@ -47,8 +47,8 @@ pub(crate) enum Command {
     Inspect(InspectOptions),
     /// Converts a program, tool library, mesh or dexel file to another format, by the extensions.
     ///
-    /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to
-    /// pictures (.png), and dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf,
+    /// Meshes (.stl .ply .glb .3mf .vtp .step) and dexels (dexels.csv .dexels .npz) can be converted to each other
+    /// and to pictures (.png), and dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf,
     /// Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and text with one line per move (.txt), tool libraries to the
     /// tools of a job (.ron).
     Convert(ConvertOptions),

@@ -98,8 +98,8 @@ pub(crate) struct NewOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct InspectOptions {
-    /// A job (.ron), program (.nc .cls .csv …), tool library (.json .fctl .tbl), mesh (.stl .ply .glb .3mf .vtp) or
-    /// dexels (dexels.csv .dexels .npz).
+    /// A job (.ron), program (.nc .cls .csv …), tool library (.json .fctl .tbl), mesh (.stl .ply .glb .3mf .vtp .step)
+    /// or dexels (dexels.csv .dexels .npz).
     #[arg(value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     #[command(flatten)]

@@ -10,6 +10,7 @@ mod page;
 mod programs;
 mod setups;
 mod shards;
+mod step;
 mod support;
 mod verify;
 mod warnings;

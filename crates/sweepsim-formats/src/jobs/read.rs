@@ -39,7 +39,8 @@ pub(crate) fn parse(text: &str, file: &FilePath, provided: &Provided) -> Result<
     reader.job(raw, units)
 }
 
-/// How far triangles may be from the surfaces of STEP files, in millimetres: a share of the smallest limit but 0.
+/// How far triangles may be from the surfaces of STEP files, in millimetres: a share of the smallest limit that is not
+/// 0.
 fn chord(raw: &schema::Job, units: Units) -> f64 {
     let regions = raw.limits.iter().flat_map(|limits| &limits.regions);
     let regions = regions.flat_map(|region| [region.gouge, region.excess]);

@@ -28,7 +28,8 @@ pub(crate) fn parsed(text: &str) -> Option<Colour> {
     Some([channel(0)?, channel(1)?, channel(2)?])
 }
 
-/// Reads a mesh with the colour of each triangle, if it has one: `.ply` (of its face, or of its corners if they agree),
+/// Reads a mesh with the colour of each triangle, if it has one: `.ply` (of its face, or of its corners if they
+/// agree),
 /// `.glb` (of its material), `.3mf` (of its material or colour group) and `.step` (of its face, or of the body). Other
 /// formats have no colours.
 ///

@@ -73,8 +73,8 @@ impl fmt::Display for MeshFormat {
 /// solids of a STEP file become triangles by [`STEP_CHORD`].
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: the file cannot be read, has more than 2 GiB, its extension is unknown, or its
-/// content is invalid.
+/// [`FormatError`] with the file's name: the file cannot be read, has more than 2 GiB, its extension is unknown, or
+/// its content is invalid.
 pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));
@@ -99,7 +99,8 @@ pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
 /// Writes a mesh, completely or not at all: `.stl`, `.ply`, `.glb`, `.3mf` or `.vtp`.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: the extension is unknown or that of STEP files, or the data cannot be written.
+/// [`FormatError`] with the file's name: the extension is unknown or that of STEP files, or the data cannot be
+/// written.
 pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
     let Some(format) = MeshFormat::of(file).filter(|format| *format != MeshFormat::Step) else {
         return Err(unknown(file, "mesh", WRITTEN));

@@ -1,7 +1,7 @@
 //! What must hold for the entities of a file so that nothing of it is lost without a word.
 //!
-//! The library places an occurrence without a transformation at the origin, and passes over kinds of solids that it does
-//! not know. Each of these is an error here, at the entity.
+//! The library places an occurrence without a transformation at the origin, and passes over kinds of solids that it
+//! does not know. Each of these is an error here, at the entity.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -52,10 +52,11 @@ impl Placed {
     }
 }
 
-/// Meshes the bodies of a tree of products. Returns them, and the largest distance found between triangles and surfaces.
+/// Meshes the bodies of a tree of products. Returns them, and the largest distance found between triangles and
+/// surfaces.
 ///
-/// The library leaves a triangle out here and there, where corners are in line; another chord error then does not. And a
-/// surface that bends where it was not looked at needs a smaller one than was asked for.
+/// The library leaves a triangle out here and there, where corners are in line; another chord error then does not. And
+/// a surface that bends where it was not looked at needs a smaller one than was asked for.
 pub(super) fn bodies(model: &Model, roots: &[Node], chord: f64) -> Result<(Vec<Placed>, f64), String> {
     let mut best: Option<Found> = None;
     let mut wanted = chord;

@@ -1,8 +1,8 @@
 //! Closes small holes of a solid's triangles.
 //!
-//! Where corners of a face are nearly in line, the library's triangulation leaves a thin triangle out, and the solid is
-//! open by three or four edges. Each loop of open edges is closed by triangles between its own corners, so that the mesh
-//! closes to the bit; that what it then encloses is right is checked against the volume of the surfaces.
+//! Where corners of a face are nearly in line, the library's triangulation leaves a thin triangle out, and the solid
+//! is open by three or four edges. Each loop of open edges is closed by triangles between its own corners, so that the
+//! mesh closes to the bit; that what it then encloses is right is checked against the volume of the surfaces.
 
 use std::collections::BTreeMap;
 

@@ -58,6 +58,7 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
     let (file_bodies, file_faces) = styles::bodies(&exchange);
     audit::open_solid(&exchange, &file_bodies, &file_faces).map_err(refused)?;
 
+    let rewritten = with_product(rewritten, &exchange, &file_bodies);
     let mut model = Model::default();
     let roots = step::read_assembly(&mut model, &mut &rewritten[..])
         .map_err(|error| error_at(&scan, text, &error.to_string(), Some(&exchange)))?;
@@ -93,6 +94,24 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
             ..StepPart::default()
         },
     )
+}
+
+/// A file without products has one of all bodies: the library numbers the faces of products only.
+fn with_product(mut text: Vec<u8>, x: &step::Exchange, bodies: &[FileBody]) -> Vec<u8> {
+    let end = text.windows(7).rposition(|words| words == b"ENDSEC;");
+    let (Some(end), Some(last), None) = (end, x.ids().max(), x.of_type("PRODUCT_DEFINITION").next()) else {
+        return text;
+    };
+    let items: Vec<String> = bodies.iter().map(|body| format!("#{}", body.number)).collect();
+    let [a, b, c, d, e, f] = [1, 2, 3, 4, 5, 6].map(|k| last.saturating_add(k));
+    let product = format!(
+        "#{a}=PRODUCT('','','',());#{b}=PRODUCT_DEFINITION_FORMATION('','',#{a});#{c}=PRODUCT_DEFINITION('','',#{b},$);\
+         #{d}=PRODUCT_DEFINITION_SHAPE('','',#{c});#{e}=SHAPE_REPRESENTATION('',({}),$);\
+         #{f}=SHAPE_DEFINITION_REPRESENTATION(#{d},#{e});\n",
+        items.join(",")
+    );
+    text.splice(end..end, product.into_bytes());
+    text
 }
 
 /// An error of the library, at the entity that it names. An entity that is missing is shown where it is referred to.

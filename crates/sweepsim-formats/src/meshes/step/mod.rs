@@ -5,8 +5,9 @@
 //!                        └──audit, styles──▶ units, placements, bodies, colours ──┘──kernel──▶ StepPart
 //! ```
 //!
-//! The library (kentron) reads geometry and topology, and triangulates each face between edges that its neighbours share,
-//! so that solids close to the bit. What it passes over without a word is found here, by `audit`, `units` and `kernel`.
+//! The library (kentron) reads geometry and topology, and triangulates each face between edges that its neighbours
+//! share, so that solids close to the bit. What it passes over without a word is found here, by `audit`, `units` and
+//! `kernel`.
 
 #[cfg(feature = "step")]
 mod audit;
@@ -118,8 +119,8 @@ impl StepPart {
 ///
 /// # Errors
 /// [`FormatError`] with the file's name, and the entity where there is one: the file cannot be read, has more than
-/// 512 MiB, is incomplete, or has something that is not read; a solid does not close; this library was built without its
-/// feature `step`.
+/// 512 MiB, is incomplete, or has something that is not read; a solid does not close; this library was built without
+/// its feature `step`.
 pub fn read_step(file: &Path, chord: f64) -> Result<StepPart, FormatError> {
     #[cfg(feature = "step")]
     let read = whole::read(file, LARGEST).and_then(|text| parse_step(&text, chord));

@@ -124,8 +124,9 @@ impl Scan {
         Some(self.entities[found.ok()?].1.clone())
     }
 
-    /// The text for the library. Each face's name becomes its number, as `#12`, which the library hands through with the
-    /// face; a solid with voids becomes an entity of two types, and a product definition with documents one without.
+    /// The text for the library. Each face's name becomes its number, as `#12`, which the library hands through with
+    /// the face; a solid with voids becomes an entity of two types, and a product definition with documents one
+    /// without.
     ///
     /// # Errors
     /// [`FormatError`] where an entity has too few attributes.

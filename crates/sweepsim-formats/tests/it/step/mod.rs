@@ -153,7 +153,8 @@ fn faces_have_their_colour_or_that_of_their_body() {
     assert!(seen[0] > 20 && seen[1..] == [2, 10], "{seen:?}");
 }
 
-/// An assembly in inches: a block of 1 × 2 × 3 twice, once turned by 90° about z, and once more in an assembly of its own.
+/// An assembly in inches: a block of 1 × 2 × 3 twice, once turned by 90° about z, and once more in an assembly of its
+/// own.
 fn assembly() -> Writer {
     let mut file = Writer::new(true);
     let faces = file.block_faces([0.0; 3], [1.0, 2.0, 3.0]);
