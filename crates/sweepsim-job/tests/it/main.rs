@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-job`, in one binary: it links once.
 
+mod ci;
 mod memory;
 mod scope;
 mod walls;
