@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub struct CiProgram {
     /// The file of the job or the program, relative to the root of the sources if it is below it.
     pub file: PathBuf,
-    /// How long the judging took.
+    /// How long the reading, judging and writing took.
     pub seconds: f64,
     /// What was looked at, and what was not.
     pub cases: Vec<CiCase>,
