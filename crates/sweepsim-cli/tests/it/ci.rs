@@ -239,3 +239,56 @@ fn shells_and_man_know_the_options() {
         assert!(folder.path(&format!("man/{name}.1")).exists(), "{name}");
     }
 }
+
+/// The page says what there is: its options, its columns and its table.
+#[test]
+fn the_page_on_continuous_integration_is_true() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let page = fs::read_to_string(docs.join("ci.md")).unwrap();
+    let action = fs::read_to_string(docs.join("action/action.yml")).unwrap();
+    let folder = Workdir::new("");
+    let help = folder.good(&["verify", "--help"]) + "--locked --path ";
+    let is_named = |c: char| c.is_ascii_lowercase() || c == '-';
+    let words = [&page, &action]
+        .into_iter()
+        .flat_map(|text| text.split(|c| !is_named(c)));
+    let options: Vec<_> = words
+        .filter(|word| word.len() > 3 && word.starts_with("--") && !word[2..].starts_with('-'))
+        .collect();
+    assert!(options.len() > 15, "{options:?}");
+    for option in options {
+        assert!(
+            help.contains(&format!("{option} ")) || help.contains(&format!("{option}\n")),
+            "{option}"
+        );
+    }
+    let table = page
+        .split("```csv\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .unwrap();
+    fs::write(folder.path("programs.csv"), table).unwrap();
+    let output = folder.run(&["verify", "--batch", "programs.csv"]);
+    let said = text(&output.stdout);
+    // None of its files is there: each row was understood.
+    assert_eq!(
+        self::table(&said),
+        [("2", "pocket.nc"), ("2", "cover.nc"), ("2", "bracket.ron")],
+        "{said}"
+    );
+    let rules = [
+        "gouge",
+        "excess",
+        "rapid",
+        "collision",
+        "fixture",
+        "spindle",
+        "feed",
+        "limit",
+        "unresolved",
+        "input",
+    ];
+    for rule in rules {
+        assert!(page.contains(&format!("`{rule}`")), "{rule}");
+    }
+}

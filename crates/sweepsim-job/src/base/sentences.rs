@@ -41,7 +41,10 @@ pub fn harm(finding: &ReportedFinding, report: &Report) -> String {
     match &finding.detail {
         Some(detail) => text += &format!("{detail}, with the tip at ({x}, {y}, {z})"),
         None if finding.near => text += &format!("too near at ({x}, {y}, {z})"),
-        None => text += &format!("{} mm deep at ({x}, {y}, {z})", measure(finding.depth)),
+        None => {
+            let way = if finding.kind == "excess" { "high" } else { "deep" };
+            text += &format!("{} mm {way} at ({x}, {y}, {z})", measure(finding.depth));
+        }
     }
     text += match finding.courses.as_deref() {
         Some("straight") => ", if the rapid is straight",

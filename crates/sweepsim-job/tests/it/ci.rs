@@ -114,6 +114,7 @@ fn a_place_without_a_line_is_about_the_program() {
     assert!(excess.needs.is_none() && !excess.annotations.is_empty(), "{excess:?}");
     for one in &excess.annotations {
         assert_eq!((&one.file, one.line), (&ci.file, None));
+        assert!(!one.message.contains("deep"), "{}", one.message);
     }
     assert!(of("collision").annotations.is_empty() && of("collision").needs.is_none());
 }
