@@ -246,6 +246,7 @@ fn below(file: &Path, root: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sweepsim_formats::{OpenPlace, ReportedRegion};
 
     #[test]
     fn files_are_named_from_the_root() {
@@ -254,6 +255,54 @@ mod tests {
         assert_eq!(named("jobs/../nc/./a.nc"), "nc/a.nc");
         assert_eq!(named("/shop/parts/nc/a.nc"), "nc/a.nc");
         assert_eq!(named("../other/a.nc"), "/shop/other/a.nc");
+    }
+
+    fn about(kind: &str, report: &Report) -> Vec<(AnnotationLevel, PathBuf, Option<usize>)> {
+        let names = Names {
+            folder: Path::new("nc"),
+            program: "nc/main.nc".into(),
+            root: Path::new("/shop"),
+        };
+        let all = found(kind, report, &names).into_iter();
+        all.map(|one| (one.level, one.file, one.line)).collect()
+    }
+
+    /// What is open is a warning at each of its lines, once; without lines it is about the program.
+    #[test]
+    fn open_statements_are_at_their_lines() {
+        let mut holder = Statement::new("holder", 0.001);
+        for line in [Some(7), Some(5), Some(7)] {
+            let mut place = OpenPlace::default();
+            (place.file, place.line) = (Some("sub.nc".to_owned()), line);
+            holder.open.push(place);
+        }
+        let mut report = Report::default();
+        report.statements = Some(vec![holder, Statement::new("excess", 0.1)]);
+        let open = |line| (AnnotationLevel::Open, PathBuf::from("nc/sub.nc"), Some(line));
+        assert_eq!(about("collision", &report), [open(5), open(7)]);
+        assert_eq!(
+            about("excess", &report),
+            [(AnnotationLevel::Open, "nc/main.nc".into(), None)]
+        );
+        assert_eq!(about("gouge", &report), []);
+    }
+
+    /// A deviation counts where neither a move nor a statement is to blame.
+    #[test]
+    fn no_deviation_is_lost() {
+        let mut region = ReportedRegion::default();
+        (region.kind, region.depth) = ("gouge".to_owned(), 0.3);
+        let mut report = Report::default();
+        report.regions = Some(vec![region]);
+        let program = (AnnotationLevel::Harm, PathBuf::from("nc/main.nc"), None);
+        assert_eq!(about("gouge", &report), [program]);
+        let mut finding = ReportedFinding::default();
+        (finding.kind, finding.file, finding.line) = ("gouge".to_owned(), Some("main.nc".to_owned()), Some(3));
+        report.findings = Some(vec![finding]);
+        assert_eq!(
+            about("gouge", &report),
+            [(AnnotationLevel::Harm, "nc/main.nc".into(), Some(3))]
+        );
     }
 
     #[test]
