@@ -33,9 +33,9 @@ pub fn main() -> ExitCode {
     session::interruption::handle();
     quiet_readers();
     let done = match Arguments::parse().command {
-        Command::Simulate(options) => commands::run(Task::Simulate, &options, &Default::default()),
-        Command::Sweep(options) => commands::run(Task::Sweep, &options, &Default::default()),
-        Command::Verify { run, judging } => commands::run(Task::Verify, &run, &judging),
+        Command::Simulate(options) => commands::run(Task::Simulate, &options),
+        Command::Sweep(options) => commands::run(Task::Sweep, &options),
+        Command::Verify(options) => commands::verify(&options),
         Command::Section(options) => commands::section(&options),
         Command::New(options) => commands::new(&options).map(|()| ExitCode::SUCCESS),
         Command::Inspect(options) => commands::inspect(&options).map(|()| ExitCode::SUCCESS),
@@ -43,6 +43,8 @@ pub fn main() -> ExitCode {
         Command::Compare(options) => commands::compare(&options).map(|()| ExitCode::SUCCESS),
         Command::Merge(options) => commands::merge(&options),
         Command::Check(options) => commands::check(&options),
+        Command::Completions(options) => commands::completions(&options).map(|()| ExitCode::SUCCESS),
+        Command::Man(options) => commands::man(&options).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|failure| {
         anstream::eprintln!("{failure}");

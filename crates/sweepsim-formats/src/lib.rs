@@ -34,6 +34,7 @@
 //! | any of these dexels, by extension | [`read_dexels_file`] | [`write_dexels_file`] |
 //! | dexels for regression tests, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
+//! | findings for continuous integration (SARIF, JUnit) | | [`to_sarif`], [`to_junit`] |
 //!
 //! Errors are [`FormatError`]s: one message with file, line, column, and what was expected. Files are written
 //! completely or not at all ([`AtomicFile`]). No input makes a reader panic.
@@ -68,8 +69,9 @@ pub use meshes::{
     write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, Measure, MoveSummary, NotLookedAt,
-    OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding, ReportedRegion, Scope, ScopeLines, SetupSummary,
-    Statement, StatementState, StatementWitness, ToolSummary, Verdict, WorkSummary, write_moves_csv,
+    Annotation, AnnotationLevel, CiCase, CiProgram, ComparisonReport, DeviationSummary, DexelCounts, Furthest,
+    HistogramBar, Measure, MoveSummary, NotLookedAt, OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding,
+    ReportedRegion, Scope, ScopeLines, SetupSummary, Statement, StatementState, StatementWitness, ToolSummary, Verdict,
+    WorkSummary, to_junit, to_sarif, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;

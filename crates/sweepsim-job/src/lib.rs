@@ -47,6 +47,7 @@
 //! | two parts compared | [`CompareRequest`] |
 //! | a file in another format | [`ConvertRequest`] |
 //! | what is in a file | [`describe`] |
+//! | findings for continuous integration | [`Outcome::ci`], [`JobError::ci`] |
 
 mod base;
 mod describe;
@@ -61,7 +62,7 @@ mod show;
 mod verify;
 mod warnings;
 
-pub use base::{Content, Folder, JobError, Memory, Sink, output_folder, words};
+pub use base::{Content, Folder, JobError, Memory, Sink, folder_name, output_folder, sentences, words};
 pub use describe::{Description, describe, tool_in_words};
 pub use parts::{CompareRequest, ConvertRequest, DeviationLimits, Difference, GridOptions, Pair, WritingOptions};
 pub use request::{
@@ -74,7 +75,10 @@ pub use shards::ShardNumber;
 pub use sweepsim::Monitor;
 pub use sweepsim_check::Measure;
 pub use sweepsim_dexel as dexel;
-pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Statement, StatementState, Verdict};
+pub use sweepsim_formats::{
+    Annotation, AnnotationLevel, CiCase, CiProgram, Job, MoveSummary, Report, ReportedFinding, Statement,
+    StatementState, Verdict, to_junit, to_sarif,
+};
 pub use sweepsim_motion as motion;
 pub use verify::{CheckedCertificate, CheckedStatement, check};
 pub use warnings::is_covered;

@@ -1,5 +1,6 @@
 //! The command line.
 
+mod batch;
 mod programs;
 mod requests;
 mod shard;
@@ -12,7 +13,7 @@ use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_job::DeviationLimits;
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, length, limits, parsed, plane, section, size, tile, tolerance};
+use values::{area, camera, cells, length, limits, pair, parsed, plane, section, size, tile, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -28,17 +29,15 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Moves the tools of a job through its stock, and writes the remaining part as dexels, mesh, picture and report.
-    Simulate(RunOptions),
+    Simulate(JobOptions),
     /// Judges a job's moves in their order: collisions of shanks and holders, rapids through material, fixtures, and
     /// gouges and excess against the target. The same outputs as `simulate`; exit status 1 if anything is found.
-    Verify {
-        #[command(flatten)]
-        run: RunOptions,
-        #[command(flatten)]
-        judging: JudgeOptions,
-    },
+    ///
+    /// Of several programs, each is judged for itself, into a folder of its own below --out. The exit status is the
+    /// worst of them: 2, 1, 3, 0.
+    Verify(VerifyOptions),
     /// Writes the volume that the tools of a job sweep, without stock: the same outputs.
-    Sweep(RunOptions),
+    Sweep(JobOptions),
     /// Cuts the volume that the tools of a job sweep by a plane: a drawing and a table of points.
     Section(SectionOptions),
     /// Writes a job for a program: what was found in it and in a tool library, and what had to be guessed, each said.
@@ -66,13 +65,57 @@ pub(crate) enum Command {
     ///
     /// Exit status: 0 proven; 1 not proven; 2 not a certificate, or it does not belong to these files.
     Check(CheckOptions),
+    /// Prints what makes a shell complete this command's options.
+    Completions(CompletionsOptions),
+    /// Prints the manual page, or writes one for each command.
+    Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct JobOptions {
+    /// The job, a .ron file, or a program (.nc .cls …).
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub job: PathBuf,
+    #[command(flatten)]
+    pub run: RunOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct VerifyOptions {
+    /// The jobs, .ron files, or programs (.nc .cls …).
+    #[arg(value_name = "JOB", value_hint = ValueHint::FilePath, required_unless_present = "batch")]
+    pub jobs: Vec<PathBuf>,
+    /// Judges the programs of a table (.csv), with the columns program, tools, stock, target, machine, controller,
+    /// limits, clearance and cells. Only `program` is needed; what is left empty is as on the command line.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "jobs")]
+    pub batch: Option<PathBuf>,
+    /// Also writes what was found and what is open to this file, as SARIF 2.1.0.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "shard")]
+    pub sarif: Option<PathBuf>,
+    /// Also writes a test case for each program and kind of harm to this file, as JUnit XML.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "shard")]
+    pub junit: Option<PathBuf>,
+    #[command(flatten)]
+    pub run: RunOptions,
+    #[command(flatten)]
+    pub judging: JudgeOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsOptions {
+    /// The shell.
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManOptions {
+    /// Writes sweepsim.1 and a page for each command to this folder.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
-    /// The job, a .ron file, or a program (.nc .cls …).
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub job: PathBuf,
     #[command(flatten)]
     pub program: ProgramOptions,
     /// The output folder [default: out/NAME].
@@ -136,11 +179,15 @@ pub(crate) struct RunOptions {
 }
 
 /// What `verify` looks at.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Args)]
 pub(crate) struct JudgeOptions {
     /// Ends at the first finding.
     #[arg(long)]
     pub first: bool,
+    /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres, instead of the job's
+    /// [default: 0.1 each].
+    #[arg(long, value_name = "GOUGE,EXCESS", value_parser = pair)]
+    pub limits: Option<[f64; 2]>,
     /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub clearance: Option<f64>,

@@ -4,15 +4,16 @@ use super::{
     CompareOptions, ConvertOptions, DialectOptions, Directions, GridOptions, JudgeOptions, Output, ProgramOptions,
     RunOptions, SectionOptions, ViewOptions, WritingOptions,
 };
+use std::path::Path;
 use sweepsim_job as job;
 use sweepsim_job::{CompareRequest, ConvertRequest, Request, Task};
 
 impl RunOptions {
     /// What is to be done, but for where and how the process does it.
-    pub fn request(&self, task: Task, judging: &JudgeOptions) -> Request {
+    pub fn request(&self, job: &Path, task: Task) -> Request {
         let mut sweeping = job::SweepOptions::default();
         (sweeping.method, sweeping.boundary, sweeping.tile) = (self.method, self.boundary, self.tile);
-        Request::from_file(&self.job)
+        Request::from_file(job)
             .task(task)
             .program(self.program.given())
             .outputs(self.only.iter().map(|output| output.named()))
@@ -24,7 +25,6 @@ impl RunOptions {
             .frames(self.frames, !self.no_tool)
             .moments(self.moments)
             .view(self.view.given())
-            .judging(judging.given())
     }
 }
 
@@ -96,7 +96,7 @@ impl WritingOptions {
 }
 
 impl JudgeOptions {
-    fn given(&self) -> job::Judging {
+    pub fn given(&self) -> job::Judging {
         let mut judging = job::Judging::default();
         (judging.first, judging.clearance) = (self.first, self.clearance);
         (judging.sure, judging.moves) = (self.sure, self.moves);

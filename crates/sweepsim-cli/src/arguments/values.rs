@@ -41,12 +41,18 @@ pub(super) fn limits(text: &str) -> Result<DeviationLimits, String> {
     {
         return Ok(DeviationLimits::Job(text.into()));
     }
+    let pair = pair(text).map(DeviationLimits::Both);
+    pair.map_err(|expected| expected + ", or a job (.ron)")
+}
+
+/// Limits for gouges and for excess.
+pub(super) fn pair(text: &str) -> Result<[f64; 2], String> {
     let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
     match numbers[..] {
         [Ok(gouge), Ok(excess)] if gouge >= 0.0 && excess >= 0.0 && gouge.is_finite() && excess.is_finite() => {
-            Ok(DeviationLimits::Both([gouge, excess]))
+            Ok([gouge, excess])
         }
-        _ => Err("expected two lengths, for gouges and for excess, like 0.02,0.1, or a job (.ron)".to_owned()),
+        _ => Err("expected two lengths, for gouges and for excess, like 0.02,0.1".to_owned()),
     }
 }
 

@@ -1,95 +1,135 @@
-//! `simulate`, `sweep` and `verify`, whole or in shards, and `merge`.
+//! `simulate` and `sweep`, whole or in shards, and `merge`; and what they share with `verify`.
 
 use super::summary::{json, summary};
-use crate::arguments::{JudgeOptions, MergeOptions, RunOptions};
+use crate::arguments::{JobOptions, MergeOptions, RunOptions};
 use crate::session::{Failure, Outputs, Progress, print};
-use std::path::{Path, absolute};
+use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim_formats::{Verdict, io_reason};
-use sweepsim_job::{JobError, Merge, Plan, ShardNumber, Sink, Task, output_folder, words};
+use sweepsim_job::{JobError, Merge, Outcome, Plan, ShardNumber, Sink, Task, Written, output_folder, words};
 
 /// How the process works, whatever it does.
-struct Process {
-    start: Instant,
+pub(super) struct Process {
+    pub start: Instant,
     threads: Option<u16>,
-    quiet: bool,
+    pub quiet: bool,
     json: bool,
 }
 
 impl Process {
-    fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+    fn pool(&self) -> Result<rayon::ThreadPool, JobError> {
         let mut builder = rayon::ThreadPoolBuilder::new();
         if let Some(threads) = self.threads {
             builder = builder.num_threads(usize::from(threads));
         }
         builder
             .build()
-            .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))
+            .map_err(|error| JobError::Run(format!("cannot start the threads: {error}")))
     }
 }
 
 /// Runs a job, or one shard of it, and writes its outputs.
-pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> Result<ExitCode, Failure> {
-    let process = Process {
-        start: Instant::now(),
-        threads: options.threads,
-        quiet: options.quiet,
-        json: options.json,
-    };
-    let plan = options.request(task, judging).plan()?;
-    match options.shard {
-        Some(number) => shard(&plan, number, options, &process),
-        None => whole(plan, (options.out.as_deref(), judging.certificate.as_deref()), &process),
+pub(crate) fn run(task: Task, options: &JobOptions) -> Result<ExitCode, Failure> {
+    let process = Process::of(&options.run);
+    let plan = options.run.request(&options.job, task).plan()?;
+    match options.run.shard {
+        Some(number) => shard(&plan, number, &options.run, &process),
+        None => whole(plan, options.run.out.as_deref(), &process),
     }
 }
 
-/// Carries out a plan, and writes its outputs, and a certificate where one is wanted.
-fn whole(
-    plan: Plan,
-    (out, certificate): (Option<&Path>, Option<&Path>),
-    process: &Process,
-) -> Result<ExitCode, Failure> {
-    plan.check_room()?;
-    let mut outputs = Outputs::new(output_folder(out, &plan.job().name))?;
-    let progress = Progress::new(plan.job().moves(), process.quiet);
-    let pool = process.pool()?;
-    let done = pool.install(|| {
-        let outcome = plan.run(&progress)?;
-        let wanted = outcome.plan().request().wanted();
-        let written = outcome.write_to(&mut outputs, wanted, &progress)?;
-        if let Some(file) = certificate {
-            let none = "there is nothing to certify: no target, or a proof that was too long";
-            let none = || JobError::Request {
-                field: "certificate",
-                why: none.to_owned(),
-            };
-            let text = outcome.certificate()?.ok_or_else(none)?;
-            let name = file.to_string_lossy();
-            Outputs::anywhere().write(&name, &mut |file| file.write_all(text.as_bytes()))?;
+/// Carries out a plan, writes its outputs, and says what was found.
+fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, Failure> {
+    let folder = output_folder(out, &plan.job().name);
+    let done = process.carry_out(plan, folder, None)?;
+    process.say(&done)?;
+    Ok(ExitCode::from(done.status()))
+}
+
+/// What a run left.
+pub(super) struct Done {
+    pub outcome: Outcome,
+    pub written: Written,
+    pub outputs: Outputs,
+    threads: usize,
+}
+
+impl Done {
+    /// The exit status.
+    pub fn status(&self) -> u8 {
+        match self.written.report.verdict {
+            Some(Verdict::Fail) => 1,
+            Some(Verdict::Undecided) => 3,
+            _ if self.written.certified => 0,
+            _ => 3,
         }
-        Ok::<_, JobError>((outcome, written))
-    });
-    progress.finish();
-    let (outcome, written) = done?;
-    let report = &written.report;
-    if process.json {
-        print(&json(report)?)?;
-    } else if !process.quiet {
-        let threads = pool.current_num_threads();
-        let total = process.start.elapsed().as_secs_f64();
-        summary(outcome.plan(), report, &outputs, threads, total).print()?;
     }
-    Ok(match report.verdict {
-        Some(Verdict::Fail) => ExitCode::FAILURE,
-        Some(Verdict::Undecided) => ExitCode::from(3),
-        _ if written.certified => ExitCode::SUCCESS,
-        _ => ExitCode::from(3),
-    })
+}
+
+impl Process {
+    pub fn of(options: &RunOptions) -> Self {
+        Self {
+            start: Instant::now(),
+            threads: options.threads,
+            quiet: options.quiet,
+            json: options.json,
+        }
+    }
+
+    /// Carries out a plan, and writes its outputs to a folder, and a certificate where one is wanted.
+    pub fn carry_out(&self, plan: Plan, folder: PathBuf, certificate: Option<&Path>) -> Result<Done, JobError> {
+        plan.check_room()?;
+        let mut outputs = Outputs::new(folder)?;
+        let pool = self.pool()?;
+        let progress = Progress::new(plan.job().moves(), self.quiet);
+        let done = pool.install(|| {
+            let outcome = plan.run(&progress)?;
+            let wanted = outcome.plan().request().wanted();
+            let written = outcome.write_to(&mut outputs, wanted, &progress)?;
+            if let Some(file) = certificate {
+                let none = "there is nothing to certify: no target, or a proof that was too long";
+                let none = || JobError::Request {
+                    field: "certificate",
+                    why: none.to_owned(),
+                };
+                let text = outcome.certificate()?.ok_or_else(none)?;
+                let name = file.to_string_lossy();
+                Outputs::anywhere().write(&name, &mut |file| file.write_all(text.as_bytes()))?;
+            }
+            Ok::<_, JobError>((outcome, written))
+        });
+        progress.finish();
+        let (outcome, written) = done?;
+        Ok(Done {
+            outcome,
+            written,
+            outputs,
+            threads: pool.current_num_threads(),
+        })
+    }
+
+    /// Prints what was found.
+    pub fn say(&self, done: &Done) -> Result<(), Failure> {
+        let report = &done.written.report;
+        if self.json {
+            print(&json(report)?)
+        } else if !self.quiet {
+            let total = self.start.elapsed().as_secs_f64();
+            summary(done.outcome.plan(), report, &done.outputs, done.threads, total).print()
+        } else {
+            Ok(())
+        }
+    }
 }
 
 /// Computes a shard, and writes its piece.
-fn shard(plan: &Plan, number: ShardNumber, options: &RunOptions, process: &Process) -> Result<ExitCode, Failure> {
+pub(super) fn shard(
+    plan: &Plan,
+    number: ShardNumber,
+    options: &RunOptions,
+    process: &Process,
+) -> Result<ExitCode, Failure> {
     plan.check_shards()?;
     let folder = output_folder(options.out.as_deref(), &plan.job().name);
     let file = folder.join(Plan::piece_name(number));
@@ -138,5 +178,5 @@ pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
             there.display()
         )));
     }
-    whole(merge.plan()?, (Some(&out), None), &process)
+    whole(merge.plan()?, Some(&out), &process)
 }

@@ -2,8 +2,8 @@
 
 use crate::session::{Failure, Lines, Outputs};
 use sweepsim_formats::{Report, ReportedFinding, StatementState, Verdict, WorkSummary};
-use sweepsim_job::words::{self, clock, found, setup_name};
-use sweepsim_job::{Plan, Task, is_covered};
+use sweepsim_job::words::{self, clock, found};
+use sweepsim_job::{Plan, Task, is_covered, sentences};
 
 /// The maximum number of findings, tools and unresolved dexels that are listed.
 const NAMED: usize = 10;
@@ -117,31 +117,29 @@ pub(crate) fn summary(plan: &Plan, report: &Report, outputs: &Outputs, threads: 
     lines
 }
 
+/// The verdict in one line.
+pub(super) fn answer(verdict: Verdict, findings: &[ReportedFinding], report: &Report) -> String {
+    let open = report.statements.iter().flatten();
+    let open = open.filter(|statement| statement.state == StatementState::Open);
+    match verdict {
+        Verdict::Undecided => {
+            let places = open.map(|statement| statement.open_count.max(1) as u64).sum();
+            let places = words::counted(places, "place");
+            format!("UNDECIDED at {places}: nothing was found on the dexels' lines that does harm")
+        }
+        Verdict::Pass => words::passed(report),
+        Verdict::Fail if findings.is_empty() => "FAIL: the part deviates from its target".to_owned(),
+        Verdict::Fail => format!("FAIL: {}", found(findings).join(", ")),
+    }
+}
+
 /// The verdict, and the first findings.
 fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
     let (Some(verdict), Some(findings)) = (report.verdict, &report.findings) else {
         return;
     };
     let statements = report.statements.as_deref().unwrap_or_default();
-    let open = || {
-        statements
-            .iter()
-            .filter(|statement| statement.state == StatementState::Open)
-    };
-    if verdict == Verdict::Undecided {
-        let places = open().map(|statement| statement.open_count.max(1) as u64).sum();
-        let text = format!(
-            "UNDECIDED at {}: nothing was found on the dexels' lines that does harm",
-            words::counted(places, "place")
-        );
-        line("verdict", &text);
-    } else if verdict == Verdict::Pass {
-        line("verdict", &words::passed(report));
-    } else if findings.is_empty() {
-        line("verdict", "FAIL: the part deviates from its target");
-    } else {
-        line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
-    }
+    line("verdict", &answer(verdict, findings, report));
     for statement in statements {
         line("proof", &words::proven(statement));
     }
@@ -154,7 +152,7 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         }
     }
     for finding in findings.iter().take(NAMED) {
-        line(&finding.kind, &sentence(finding, report));
+        line(&finding.kind, &located(finding, report));
     }
     if findings.len() > NAMED {
         line(
@@ -171,40 +169,14 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
     }
 }
 
-/// A finding in one line.
-fn sentence(finding: &ReportedFinding, report: &Report) -> String {
+/// A finding in one line, with its place and the text of the program.
+fn located(finding: &ReportedFinding, report: &Report) -> String {
     let mut text = match (&finding.file, finding.line, finding.path, finding.r#move) {
         (Some(file), Some(line), ..) => format!("{file}:{line}: "),
         (_, _, Some(path), Some(number)) => format!("path {path}, move {number}: "),
         _ => String::new(),
     };
-    if let Some(name) = setup_name(report, finding.setup) {
-        text += &format!("set-up {name}, ");
-    }
-    if let Some(tool) = finding.tool {
-        let part = finding.body.as_deref().unwrap_or("cutter");
-        text += &match &finding.detail {
-            Some(_) => format!("tool {tool}, "),
-            None => format!("{part} of tool {tool}, "),
-        };
-    }
-    let [x, y, z] = finding.place.map(|c| format!("{c:.3}"));
-    match &finding.detail {
-        Some(detail) => text += &format!("{detail}, with the tip at ({x}, {y}, {z})"),
-        None if finding.near => text += &format!("too near at ({x}, {y}, {z})"),
-        None => text += &format!("{} mm deep at ({x}, {y}, {z})", words::measure(finding.depth)),
-    }
-    text += match finding.courses.as_deref() {
-        Some("straight") => ", if the rapid is straight",
-        Some("dog-leg") => ", if the rapid is a dog-leg",
-        _ => "",
-    };
-    if finding.between {
-        text += ", seen between the lines";
-    }
-    if let Some(time) = finding.time {
-        text += &format!(", from {:.1} % of the move", 100.0 * time);
-    }
+    text += &sentences::harm(finding, report);
     if let Some(program) = &finding.text {
         text += &format!(" | {program}");
     }

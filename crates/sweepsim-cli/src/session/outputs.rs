@@ -2,7 +2,7 @@
 
 use super::interruption::{interrupted, writing};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sweepsim_job::{Content, Folder, JobError, Sink, words};
 
 /// The output folder, and what has been written to it.
@@ -18,6 +18,11 @@ impl Outputs {
     /// Files anywhere.
     pub fn anywhere() -> Self {
         Self(Folder::default())
+    }
+
+    /// The folder; empty for files anywhere.
+    pub fn folder(&self) -> &Path {
+        self.0.path()
     }
 
     /// The files written, with their sizes, for the last line of a summary.

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-cli`, in one binary: it links once.
 
+mod ci;
 mod command;
 mod directions;
 mod exchange;

@@ -1,8 +1,14 @@
 //! `report.json`: the results of a run, or of a comparison, for scripts.
 
+mod ci;
+mod junit;
+mod sarif;
 mod statement;
 mod work;
 
+pub use ci::{Annotation, AnnotationLevel, CiCase, CiProgram};
+pub use junit::to_junit;
+pub use sarif::to_sarif;
 pub use statement::{Measure, OpenPlace, Statement, StatementState, StatementWitness};
 pub use work::{MoveSummary, SetupSummary, ToolSummary, WorkSummary, write_moves_csv};
 
@@ -168,14 +174,30 @@ pub struct NotLookedAt {
     pub about: String,
     /// What it needs.
     pub needs: String,
+    /// The kinds of findings that it would make.
+    #[serde(default)]
+    pub kinds: Vec<String>,
+    /// Whether some of these kinds was looked at all the same.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub partly: bool,
 }
 
 impl NotLookedAt {
-    /// Something, and what it needs.
+    /// Something, what it needs, and the kinds of findings that it would make.
     #[must_use]
-    pub fn new(about: impl Into<String>, needs: impl Into<String>) -> Self {
-        let (about, needs) = (about.into(), needs.into());
-        Self { about, needs }
+    pub fn new(about: impl Into<String>, needs: impl Into<String>, kinds: &[&str]) -> Self {
+        Self {
+            about: about.into(),
+            needs: needs.into(),
+            kinds: kinds.iter().map(|kind| (*kind).to_owned()).collect(),
+            partly: false,
+        }
+    }
+
+    /// The same where only a part was not looked at.
+    #[must_use]
+    pub fn partly(self, partly: bool) -> Self {
+        Self { partly, ..self }
     }
 }
 

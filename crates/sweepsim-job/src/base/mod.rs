@@ -3,10 +3,11 @@
 mod error;
 pub(crate) mod kind;
 mod memory;
+pub mod sentences;
 mod sink;
 pub mod words;
 
 pub use error::JobError;
 pub(crate) use memory::check_room;
 pub use memory::least_memory;
-pub use sink::{Content, Folder, Memory, Sink, output_folder};
+pub use sink::{Content, Folder, Memory, Sink, folder_name, output_folder};

@@ -102,7 +102,8 @@ pub fn output_folder(out: Option<&Path>, name: &str) -> PathBuf {
 }
 
 /// A name made safe for a folder: it cannot lead out of `out/`.
-fn folder_name(name: &str) -> PathBuf {
+#[must_use]
+pub fn folder_name(name: &str) -> PathBuf {
     let safe: String = name
         .chars()
         .map(|c| {

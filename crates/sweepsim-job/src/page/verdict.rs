@@ -1,7 +1,8 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::base::words::{between, capital, counted, found, is_everywhere, looked_at, proven, setup_name};
+use crate::base::sentences;
+use crate::base::words::{between, counted, found, is_everywhere, looked_at, proven, setup_name};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -63,24 +64,6 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
     Some(verdict)
 }
 
-fn title(finding: &ReportedFinding) -> String {
-    let part = finding.body.as_deref().unwrap_or("cutter");
-    let part = capital(part);
-    match finding.kind.as_str() {
-        "fixture" if finding.near => format!("{part} too near to a fixture"),
-        _ if finding.near => format!("{part} too near to the workpiece"),
-        "collision" => format!("{part} hits the workpiece"),
-        "fixture" => format!("{part} hits a fixture"),
-        "rapid" => "Rapid move through material".to_owned(),
-        "gouge" => "Cuts into the part".to_owned(),
-        "excess" => "Material left on the part".to_owned(),
-        "spindle" => "Cuts with the spindle stopped".to_owned(),
-        "feed" => "Cuts without a feed".to_owned(),
-        "limit" => "Beyond the machine's limits".to_owned(),
-        kind => kind.to_owned(),
-    }
-}
-
 /// The findings with the lines around them; `clock` tells the time of a part of a move.
 pub(super) fn findings(
     report: &Report,
@@ -119,7 +102,7 @@ pub(super) fn findings(
         }
         let place = found.file.as_deref().zip(found.line);
         Finding {
-            title: title(found),
+            title: sentences::title(found),
             kind: found.kind.clone(),
             place: found.place,
             clock: found.path.zip(found.r#move).and_then(|(path, number)| {

@@ -1,5 +1,6 @@
 //! From a plan to its outcome, and from the outcome to files.
 
+mod ci;
 mod compute;
 mod envelope;
 mod files;

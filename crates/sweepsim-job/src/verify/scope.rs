@@ -43,30 +43,32 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
     let mut all = Vec::new();
     if job.target.is_none() {
         let needs = needs("`target` in the job", "--target FILE");
-        all.push(NotLookedAt::new("gouges and excess", needs));
+        all.push(NotLookedAt::new("gouges and excess", needs, &["gouge", "excess"]));
     } else if session.request.judging.first {
-        all.push(NotLookedAt::new("excess", "a run without --first"));
+        all.push(NotLookedAt::new("excess", "a run without --first", &["excess"]));
     }
     let is_bare = |number: &&u32| job.bodies.get(*number).is_none_or(Vec::is_empty);
     let bare: Vec<String> = job.tools.keys().filter(is_bare).map(u32::to_string).collect();
     if !bare.is_empty() {
-        let about = match bare.len() == job.tools.len() {
-            true => "shanks and holders".to_owned(),
-            false => format!("shanks and holders of the tools {}", bare.join(", ")),
+        let partly = bare.len() < job.tools.len();
+        let about = match partly {
+            false => "shanks and holders".to_owned(),
+            true => format!("shanks and holders of the tools {}", bare.join(", ")),
         };
         let needs = needs(
             "`bodies` in the job",
             "a library with holders (--tools), or a job with `bodies`",
         );
-        all.push(NotLookedAt::new(about, needs));
+        all.push(NotLookedAt::new(about, needs, &["collision"]).partly(partly));
     }
     if job.setups.iter().all(|setup| setup.fixtures.is_empty()) {
         let needs = needs("`fixtures` in the job", "a job with `fixtures`");
-        all.push(NotLookedAt::new("fixtures", needs));
+        all.push(NotLookedAt::new("fixtures", needs, &["fixture"]));
     }
     if is_guessed(session) {
         let needs = needs("`stock` in the job", "--stock");
-        all.push(NotLookedAt::new("rapids through the real stock: it was guessed", needs));
+        let about = "rapids through the real stock: it was guessed";
+        all.push(NotLookedAt::new(about, needs, &["rapid"]).partly(true));
     }
     all
 }

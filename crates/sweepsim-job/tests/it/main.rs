@@ -1,6 +1,7 @@
 //! Integration tests of `sweepsim-job`, in one binary: it links once.
 
 mod certificates;
+mod ci;
 mod memory;
 mod scope;
 mod walls;

@@ -109,6 +109,7 @@ impl JobReader<'_> {
                 spindle_stopped: Flags::default(),
                 no_feed: Flags::default(),
                 beyond: Vec::new(),
+                has_limits: false,
                 dwell_seconds: 0.0,
                 path,
                 source,

@@ -55,6 +55,8 @@ pub struct JobPath {
     /// What the machine cannot do, if one is known: axes beyond their limits, or faster than they can be. The pose is
     /// one of this path.
     pub beyond: Vec<AxisFinding>,
+    /// Whether a machine is known that has limits.
+    pub has_limits: bool,
     /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
     pub seconds: Seconds,
     /// How long the tool rests between these moves, in seconds.

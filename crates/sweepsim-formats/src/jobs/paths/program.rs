@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use sweepsim_motion::{Law, PackedRows};
-use sweepsim_nc::{Call, Event, EventKind, MoveTime, Note, Program, ProgramPose, Spindle, check};
+use sweepsim_nc::{Call, Event, EventKind, Kinematics, MoveTime, Note, Program, ProgramPose, Spindle, check};
 
 use super::section::{Known, Section, Whole, with_notes};
 use super::{Flags, JobPath};
@@ -98,6 +98,7 @@ pub(crate) fn of_program(
             tool: number,
             shown,
             beyond: &beyond,
+            has_limits: kinematics.is_some_and(has_limits),
             has_spindle,
             files: files.clone(),
             calls: calls.clone(),
@@ -109,6 +110,12 @@ pub(crate) fn of_program(
         paths.iter_mut().for_each(|path| path.no_feed = Flags::default());
     }
     Ok(with_notes(paths, notes))
+}
+
+/// Whether any axis of a machine has limits.
+fn has_limits(machine: &Kinematics) -> bool {
+    let linear = machine.linear().iter().any(|axis| axis.limits.is_some());
+    linear || machine.rotary().any(|axis| axis.limits.is_some())
 }
 
 /// The times of the moves of a program, packed.

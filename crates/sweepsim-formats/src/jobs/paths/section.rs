@@ -118,6 +118,7 @@ impl Section {
             dwell_seconds: self.dwell_seconds,
             assumed_rapids: self.assumed_rapids,
             beyond: at_steps(whole.beyond, &self.steps),
+            has_limits: whole.has_limits,
             spindle_stopped: if whole.has_spindle {
                 self.stopped
             } else {
@@ -137,6 +138,8 @@ pub(super) struct Whole<'a> {
     pub tool: u32,
     pub shown: &'a str,
     pub beyond: &'a [AxisFinding],
+    /// Whether the machine is known and has limits.
+    pub has_limits: bool,
     /// Whether the program ever turns the spindle.
     pub has_spindle: bool,
     pub files: Arc<[PathBuf]>,

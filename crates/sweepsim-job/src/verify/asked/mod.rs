@@ -261,6 +261,10 @@ impl<'a> AskedAll<'a> {
             deviation: self.deviation,
             ..Scene::default()
         };
+        // Without a question, nothing says how near to the paths their motions must be.
+        if self.statements.is_empty() {
+            return scene;
+        }
         for obstacle in &self.obstacles {
             let triangles = obstacle.triangles.as_ref();
             scene
