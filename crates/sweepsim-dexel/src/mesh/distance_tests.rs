@@ -172,8 +172,7 @@ fn a_shaft_takes_few_triangles_a_point() {
     assert!(most.iter().all(|looked| *looked < 400 * 100), "{most:?}");
 }
 
-/// Solids that touch, a slit and a flap without thickness: two triangles are as near, on both sides of which there is the
-/// same.
+/// Solids that touch, and a flap without thickness: two triangles are as near, with the same on both sides.
 #[test]
 fn sides_are_right_where_triangles_lie_on_each_other() {
     // Two blocks that touch in a part of a face are one solid.

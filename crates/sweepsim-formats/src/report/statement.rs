@@ -6,10 +6,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Statement {
-    /// `gouge`: no cutter goes deeper below the target than the limit; `excess`: nothing that hangs together with the
-    /// target stands higher above it; `fixture`: no cutter or body goes deeper into a fixture; `holder`: no body goes
-    /// deeper into the target; `collision`: none goes deeper into the stock as it is at that time; `rapid`: no cutter does
-    /// in a rapid, or in another move that must not cut. Of fixtures, holders and collisions with [`Measure::Distance`]: no body comes nearer than the limit.
+    /// What may not happen, deeper than the limit:
+    ///
+    /// - `gouge`: a cutter in the target; `holder`: a shank or holder in it; `fixture`: any of these in a fixture;
+    /// - `collision`: a shank or holder in the stock as it is at that time; `rapid`: a cutter in it in a rapid, or in
+    ///   another move that must not cut;
+    /// - `excess`: material that hangs together with the target, above it.
+    ///
+    /// Of fixtures, holders and collisions with [`Measure::Distance`]: a shank or holder that comes nearer.
     pub about: String,
     /// What is measured.
     #[serde(default, skip_serializing_if = "Measure::is_depth")]

@@ -217,7 +217,10 @@ fn nothing_is_proven_of_a_target_that_crosses_itself() {
 #[test]
 fn without_a_target_nothing_is_kept_for_a_checker() {
     let circle = "G1 X40 Y20 Z-2 F500\nG2 I-10 J0\n";
-    let program = format!("G21 G90\nT1 M6\nS6000 M3\nG0 X40 Y20 Z5\n{}G0 Z5\nM30\n", circle.repeat(100));
+    let program = format!(
+        "G21 G90\nT1 M6\nS6000 M3\nG0 X40 Y20 Z5\n{}G0 Z5\nM30\n",
+        circle.repeat(100)
+    );
     let request = Request::from_program("circles.nc", &program)
         .tool(1, Tool::flat(5.0, 30.0).unwrap())
         .stock(Stock::Block {
@@ -228,5 +231,9 @@ fn without_a_target_nothing_is_kept_for_a_checker() {
     let outcome = request.plan().unwrap().run(&()).unwrap();
     let statements = outcome.report().statements.as_deref().expect("statements");
     let [rapid] = statements else { panic!("{statements:?}") };
-    assert_eq!((&rapid.about[..], rapid.state), ("rapid", StatementState::Proven), "{rapid:?}");
+    assert_eq!(
+        (&rapid.about[..], rapid.state),
+        ("rapid", StatementState::Proven),
+        "{rapid:?}"
+    );
 }
