@@ -68,8 +68,8 @@ pub use meshes::{
     write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, Measure, MoveSummary, NotLookedAt,
-    OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding, ReportedRegion, Scope, ScopeLines, SetupSummary,
-    Statement, StatementState, StatementWitness, ToolSummary, Verdict, WorkSummary, write_moves_csv,
+    ComparisonReport, DeviationSummary, DexelCounts, HistogramBar, Measure, MoveSummary, NotLookedAt, OpenPlace,
+    PathSummary, Report, ReportedDexel, ReportedFinding, ReportedRegion, Scope, ScopeLines, SetupSummary, Statement,
+    StatementState, StatementWitness, SurfaceDeviation, ToolSummary, Verdict, WorkSummary, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;
