@@ -1,6 +1,7 @@
 //! Integration tests of `sweepsim-cli`, in one binary: it links once.
 
 mod command;
+mod comparison;
 mod directions;
 mod exchange;
 mod frames;

@@ -12,8 +12,6 @@ use std::collections::HashMap;
 
 /// The maximum number of samples on triangles.
 const SAMPLES: f64 = 2e6;
-/// The most pieces of a side of a triangle.
-const PIECES: f64 = 2048.0;
 
 /// A point of a surface, or a stretch on which one point is.
 pub(super) struct SurfaceSample {
@@ -52,22 +50,28 @@ impl SurfaceSample {
     }
 }
 
-fn weighted(corners: &[[f64; 3]; 3], weights: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| (0..3).map(|c| weights[c] * corners[c][k]).sum())
+/// The number of the longest side of a triangle, from the corner of that number, and its length.
+fn longest(corners: &[[f64; 3]; 3]) -> (usize, f64) {
+    let sides = [0, 1, 2].map(|k| length(sub(corners[(k + 1) % 3], corners[k])));
+    let k = (0..3).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
+    (k, sides[k])
 }
 
-/// On triangles: at all corners, and at the middles of equal pieces of at most `spacing`.
+/// On triangles: at all corners, and so that no point is farther than `spacing` from the next sample, or than is
+/// possible with two million.
 pub(super) fn on_triangles(
     soup: &TriangleSoup,
     spacing: f64,
     of: impl Fn(&SurfaceSample) -> Option<SampleDeviation> + Sync,
 ) -> Vec<SampleDeviation> {
     let area = |t: &[[f64; 3]; 3]| 0.5 * length(normal_of(*t));
-    let total: f64 = soup.triangles.iter().map(area).sum();
-    // A piece of side s has at least half of s² / 2 as its share of a triangle that is not very thin.
-    let spacing = spacing.max((2.0 * total / SAMPLES).sqrt());
-    let solid = soup.triangles.iter().filter(|corners| area(corners) > 0.0);
-    let solid: Vec<(usize, &[[f64; 3]; 3])> = solid.enumerate().collect();
+    let is_solid = |corners: &&[[f64; 3]; 3]| area(corners) > 0.0 && area(corners).is_finite();
+    let solid: Vec<(usize, &[[f64; 3]; 3])> = soup.triangles.iter().filter(is_solid).enumerate().collect();
+    // Pieces have at least about an eighth of the square of their size as their area, or are those of thin triangles.
+    let total: f64 = solid.iter().map(|(_, corners)| area(corners)).sum();
+    let long = solid.iter().map(|(_, corners)| longest(corners).1);
+    let thin: f64 = long.filter(|long| *long > spacing).sum();
+    let spacing = spacing.max((4.0 * total / SAMPLES).sqrt()).max(4.0 * thin / SAMPLES);
     let bits = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
     // Only looked up, so its order does not matter.
     let mut first = HashMap::with_capacity(solid.len());
@@ -77,40 +81,32 @@ pub(super) fn on_triangles(
         }
     }
     let of_triangle = |(number, corners): &(usize, &[[f64; 3]; 3])| {
-        let size = area(corners);
-        let normal = normal_of(**corners).map(|c| 0.5 * c / size);
-        let longest = (0..3)
-            .map(|k| length(sub(corners[(k + 1) % 3], corners[k])))
-            .fold(0.0, f64::max);
-        // Of a thin triangle only as many as its area asks for.
-        let share = (2.0 * size).sqrt() / spacing;
-        let count = (longest / spacing).min(4.0 * share.max(1.0)).ceil().clamp(1.0, PIECES) as usize;
-        let n = count as f64;
-        let sample = |weights: [f64; 3], area: f64| SurfaceSample {
-            places: smallvec![weighted(corners, weights)],
-            normal,
-            area,
+        let normal = normal_of(**corners).map(|c| 0.5 * c / area(corners));
+        let sample = |place: [f64; 3], area: f64| {
+            of(&SurfaceSample {
+                places: smallvec![place],
+                normal,
+                area,
+            })
         };
-        let mut found = Vec::with_capacity(count * count + 3);
-        for (corner, place) in corners.iter().enumerate() {
-            // Of the triangles around it only the first.
-            if first.get(&bits(*place)) == Some(number) {
-                let mut weights = [0.0; 3];
-                weights[corner] = 1.0;
-                found.extend(of(&sample(weights, 0.0)));
+        // Of the triangles around a corner only the first.
+        let own = corners.iter().filter(|place| first.get(&bits(**place)) == Some(number));
+        let mut found: Vec<SampleDeviation> = own.filter_map(|place| sample(*place, 0.0)).collect();
+        // Halved across the longest side, so that pieces of thin triangles become short, too.
+        let mut open = vec![(**corners, area(corners))];
+        while let Some((piece, share)) = open.pop() {
+            let (k, long) = longest(&piece);
+            // No point is farther from the centroid than two thirds of the longest side.
+            if long <= 1.5 * spacing {
+                found.extend(sample(
+                    [0, 1, 2].map(|c| (piece[0][c] + piece[1][c] + piece[2][c]) / 3.0),
+                    share,
+                ));
+                continue;
             }
-        }
-        for i in 0..count {
-            for j in 0..count - i {
-                // The piece that lies like the triangle, and the one that is turned.
-                for (turned, off) in [(false, 1.0 / 3.0), (true, 2.0 / 3.0)] {
-                    if turned && i + j + 1 >= count {
-                        continue;
-                    }
-                    let [u, v] = [i, j].map(|c| (c as f64 + off) / n);
-                    found.extend(of(&sample([1.0 - u - v, u, v], size / (n * n))));
-                }
-            }
+            let [a, b, c] = [piece[k], piece[(k + 1) % 3], piece[(k + 2) % 3]];
+            let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
+            open.extend([([a, middle, c], 0.5 * share), ([middle, b, c], 0.5 * share)]);
         }
         found
     };
@@ -155,4 +151,35 @@ pub(super) fn at_tri_ends(
         all.extend(found);
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_point_of_a_triangle_is_far_from_a_sample() {
+        // A large one, and a needle.
+        for corners in [
+            [[0.0; 3], [7.0, 1.0, 0.0], [2.0, 5.0, 3.0]],
+            [[0.0; 3], [50.0, 0.0, 0.0], [50.0, 0.001, 0.0]],
+        ] {
+            let soup = TriangleSoup {
+                triangles: vec![corners],
+            };
+            let found = on_triangles(&soup, 0.5, |sample| {
+                sample.deviation(|_| Some(DistanceRange::exactly(0.0)))
+            });
+            let total: f64 = found.iter().map(|sample| sample.area).sum();
+            assert!((total - 0.5 * length(normal_of(corners))).abs() < 1e-9 * total);
+            for k in 0..=40 {
+                for l in 0..=40 - k {
+                    let [u, v] = [k, l].map(|c| f64::from(c) / 40.0);
+                    let p = [0, 1, 2].map(|c| corners[0][c] * (1.0 - u - v) + corners[1][c] * u + corners[2][c] * v);
+                    let away = found.iter().map(|sample| length(sub(sample.place, p)));
+                    assert!(away.fold(f64::INFINITY, f64::min) <= 0.5);
+                }
+            }
+        }
+    }
 }

@@ -151,6 +151,27 @@ fn a_wall_moved() {
     all_forms_tell(&part(8.13), &part(8.15), 0.02, 1e-9);
 }
 
+/// The floor of one set of lines is the wall of another, and grids may lie in frames.
+#[test]
+fn lines_along_a_wall_do_not_know_it_and_lines_across_do() {
+    let part = |side: f64| Forms::new(&block([-11.1, -9.3, 0.0], [side, 9.3, 7.1]));
+    let (part, target) = (part(8.13), part(8.15));
+    for (axis, lines) in part.tri.sets().iter().enumerate() {
+        let (lines, target) = (Surface::of_dexels(lines).unwrap(), &target.surfaces()[2]);
+        for found in [
+            lines.deviations_from(target, CELL, TOLERANCE),
+            target.missing_from(&lines, CELL, TOLERANCE),
+        ] {
+            let [least, most] = found.largest();
+            assert!(
+                least <= 0.02 + 1e-9 && 0.02 - 1e-9 <= most && most < 0.75,
+                "{axis}: {least} {most}"
+            );
+            assert_eq!(axis == 0, (least - 0.02).abs() < 1e-9, "{axis}: {least} {most}");
+        }
+    }
+}
+
 #[test]
 fn a_slanted_plane_too_low() {
     for slope in [0.2_f64, 0.45] {
