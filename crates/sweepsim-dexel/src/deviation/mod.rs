@@ -113,8 +113,8 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// The surface of dexels along one axis: exact at their ends, as [`Dexels::surface`] on faces that run from one line
-    /// to the next, and anywhere between a line with material and one without on walls.
+    /// The surface of dexels along one axis: exact at their ends, as [`Dexels::surface`] on faces that run from one
+    /// line to the next, and anywhere between a line with material and one without on walls.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -147,18 +147,18 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// How far this surface is from another: at all ends of dexels; at all corners of triangles and on them at most
-    /// `spacing` apart; and on walls that may be anywhere between two lines, from one to the other. Distances up to
-    /// `tolerance` count as 0.
+    /// How far this surface is from another: at all ends of dexels; at all corners of triangles, and so that no point of
+    /// them is farther than `spacing` from a sample; and on walls that may be anywhere between two lines, from one to
+    /// the other. Distances up to `tolerance` count as 0.
     #[must_use]
     pub fn deviations_from(&self, other: &Self, spacing: f64, tolerance: f64) -> SurfaceDeviations {
         let of = |sample: &SurfaceSample| sample.deviation(|p| other.distance(p));
         self.sampled(spacing, tolerance, of)
     }
 
-    /// As [`deviations_from`](Self::deviations_from), but where this solid is missing from a part, at most by as much as
-    /// it is thick there, along its normal or an axis. So a web that is missing altogether is missing by its thickness,
-    /// however far what remains is from it.
+    /// As [`deviations_from`](Self::deviations_from), but where this solid is missing from a part, at most by as much
+    /// as it is thick there, along its normal or an axis. So a web that is missing altogether is missing by its
+    /// thickness, however far what remains is from it.
     #[must_use]
     pub fn missing_from(&self, part: &Self, spacing: f64, tolerance: f64) -> SurfaceDeviations {
         self.sampled(spacing, tolerance, |sample| {

@@ -14,8 +14,8 @@ const BLUR: f64 = 3e-4;
 const STEEP: f64 = 3.0;
 
 /// Heights at which one of two neighbouring lines has material and the other has none, where no smooth face is known
-/// that runs from one to the other: the surface is somewhere between them at each of these heights. Where two faces meet
-/// at an edge, both ends may be as high. In the frame of the grid.
+/// that runs from one to the other: the surface is somewhere between them at each of these heights. Where two faces
+/// meet at an edge, both ends may be as high. In the frame of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
     /// The line with material there, and the one without.
