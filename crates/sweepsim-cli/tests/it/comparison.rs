@@ -68,7 +68,7 @@ fn a_slot_and_itself() {
         workdir.good(&["compare", &part, "shallow/part.ply", "--out", "cmp", "--size", "60x40"])
     };
     let words = said("part.tridexels");
-    assert!(words.contains("part     largest distance 0.10000 mm at ("), "{words}");
+    assert!(words.contains("part  largest distance 0.10000 mm at ("), "{words}");
     assert!(!words.contains('['), "{words}");
     // The floor is certain, the walls are not.
     let words = said("part.dexels");

@@ -253,7 +253,7 @@ fn comparison_finds_what_was_cut() {
         "60x40",
     ]);
     assert!(
-        same.contains("part     largest distance [0, ") && same.contains("[a, b] is between a and b"),
+        same.contains("part  largest distance [0, ") && same.contains("[a, b] is between a and b"),
         "{same}"
     );
     assert!(
