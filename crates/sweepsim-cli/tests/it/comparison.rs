@@ -68,12 +68,14 @@ fn a_slot_and_itself() {
         workdir.good(&["compare", &part, "shallow/part.ply", "--out", "cmp", "--size", "60x40"])
     };
     let words = said("part.tridexels");
-    assert!(words.contains("part  largest distance 0.10000 mm at ("), "{words}");
+    assert!(words.contains("part  largest distance 0.1000"), "{words}");
     assert!(!words.contains('['), "{words}");
+    // Nothing stands out, in volume neither.
+    assert!(words.contains("excess  0 mm³, nothing beyond the tolerance"), "{words}");
     // The floor is certain, the walls are not.
     let words = said("part.dexels");
     assert!(
-        words.contains("largest distance [0.10000, ") && words.contains("[a, b] is between a and b"),
+        words.contains("largest distance [0.1000") && words.contains("[a, b] is between a and b"),
         "{words}"
     );
 }

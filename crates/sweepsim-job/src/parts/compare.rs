@@ -157,12 +157,7 @@ impl Pair<'_> {
             Solid::Mesh(target) => soup(target),
         };
         let failed = |error| JobError::file(&request.target, error);
-        match &part {
-            Solid::TriDexels(part) => volumes(&mut report, part.sets(), &surface).map_err(failed)?,
-            Solid::Dexels(_) | Solid::Mesh(_) => {
-                volumes(&mut report, std::slice::from_ref(&dexels), &surface).map_err(failed)?;
-            }
-        }
+        volumes(&mut report, &dexels, &surface).map_err(failed)?;
         regions(&mut report, request, &dexels, surface)?;
         report.cells = grid.cells();
         let soups = [&mesh, &goal].map(soup);
@@ -243,19 +238,15 @@ fn regions(
     Ok(())
 }
 
-/// Volumes on the lines of one or of three sets of dexels, of which they are the mean.
-fn volumes(report: &mut ComparisonReport, sets: &[Dexels], target: &TriangleSoup) -> Result<(), StockError> {
-    let target = Stock::Mesh(target.clone());
-    for set in sets {
-        let goal = target.dexels(set.grid())?;
-        let mut common = set.clone();
-        common.combine(Operation::Intersection, &goal)?;
-        let share = |volume: f64| volume.max(0.0) / sets.len() as f64;
-        report.volume += share(set.volume());
-        report.target_volume += share(goal.volume());
-        report.excess_volume += share(set.volume() - common.volume());
-        report.missing_volume += share(goal.volume() - common.volume());
-    }
+/// Volumes on the lines of the part's dexels: of three sets on those along z, as in all other figures.
+fn volumes(report: &mut ComparisonReport, dexels: &Dexels, target: &TriangleSoup) -> Result<(), StockError> {
+    let goal = Stock::Mesh(target.clone()).dexels(dexels.grid())?;
+    let mut common = dexels.clone();
+    common.combine(Operation::Intersection, &goal)?;
+    report.volume = dexels.volume();
+    report.target_volume = goal.volume();
+    report.excess_volume = (dexels.volume() - common.volume()).max(0.0);
+    report.missing_volume = (goal.volume() - common.volume()).max(0.0);
     Ok(())
 }
 
