@@ -219,7 +219,7 @@ fn comparison_finds_what_was_cut() {
         assert!((missing - (1200.0 - number("volume"))).abs() < 1e-9 && number("excess_volume") < 1e-9);
         assert!(missing > 150.0, "{missing}");
         // The groove is 3 deep, and nothing stands out.
-        // The floor is 3 below the top of the block; above it, the walls of the groove are 2 away, or beside their lines.
+        // The floor is 3 below the top of the block; its middle is 2 from the walls of the groove, wherever they are.
         let [least, most] = pair("of_part", "largest");
         assert!(
             (2.7..3.01).contains(&least) && least <= most && most < 3.6,
