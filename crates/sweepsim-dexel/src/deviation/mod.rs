@@ -63,9 +63,9 @@ impl DistanceRange {
 /// use sweepsim_dexel::{Grid, Stock, Surface, TriangleSoup};
 /// let block = |side: f64| TriangleSoup::block([-side, -4.0, 0.0], [side, 4.0, 2.0]);
 /// let grid = Grid::new([-9.0; 2], [9.0; 2], [36, 36])?;
-/// let wide = block(6.1);
+/// let (wide, narrow) = (block(6.1), block(6.0));
 /// let dexels = Stock::Mesh(wide.clone()).dexels(&grid)?;
-/// let (part, target) = (Surface::of_triangles(&wide)?, Surface::of_triangles(&block(6.0))?);
+/// let (part, target) = (Surface::of_triangles(&wide)?, Surface::of_triangles(&narrow)?);
 /// let found = part.deviations_from(&target, 0.5, 1e-6);
 /// let most = found.outside.unwrap();
 /// assert!((most.least - 0.1).abs() < 1e-12 && most.least == most.most);
