@@ -22,6 +22,7 @@
 //! ```
 
 mod compare;
+mod deviation;
 mod dexels;
 mod grid;
 mod intervals;
@@ -32,6 +33,7 @@ mod tri;
 mod vector;
 
 pub use compare::{Comparison, Deviation, compare, compare_tri_with_mesh, compare_with_mesh};
+pub use deviation::{DeviationAt, DistanceRange, Surface, SurfaceDeviations};
 pub use dexels::{
     Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, TilesError, pack_normal, unpack_normal,
 };

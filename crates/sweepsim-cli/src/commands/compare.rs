@@ -2,7 +2,7 @@
 
 use crate::arguments::CompareOptions;
 use crate::session::{Failure, Lines, Outputs, Progress, print};
-use sweepsim_formats::{ComparisonReport, DeviationSummary, Furthest, ReportedRegion};
+use sweepsim_formats::{ComparisonReport, DeviationSummary, ReportedRegion};
 use sweepsim_job::{output_folder, words};
 
 /// The most regions that are named one by one.
@@ -43,9 +43,6 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
         "missing",
         &format!("{}, {}", volume(report.missing_volume), words_of(&report.gouge)),
     );
-    let [mean, rms] = [report.mean, report.rms].map(length);
-    let area = words::measure(report.area);
-    line("distance", &format!("mean {mean}, RMS {rms} mm, over {area} mm²"));
     let [gouge, excess] = report.limits.map(length);
     let count = words::counted(report.regions.len() as u64, "region");
     line(
@@ -61,19 +58,22 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
             &format!("… and {} more, all in comparison.json", report.regions.len() - NAMED),
         );
     }
-    for (label, furthest) in [("part", report.furthest_of_part), ("target", report.furthest_of_target)] {
-        if let Some(Furthest { place, distance }) = furthest {
-            let (distance, place) = (length(distance), words::point(place));
-            line("furthest", &format!("{distance} mm at {place}, of the {label}"));
-        }
+    for (label, found) in [("part", &report.of_part), ("target", &report.of_target)] {
+        let place = found
+            .place
+            .map_or(String::new(), |place| format!(" at {}", words::point(place)));
+        let [largest, mean, rms] = [found.largest, found.mean, found.rms].map(range);
+        let area = words::measure(found.area);
+        line(
+            label,
+            &format!("largest distance {largest} mm{place}; mean {mean}, RMS {rms} mm, over {area} mm²"),
+        );
     }
-    if report.unmatched > 0 {
+    let open = [&report.of_part, &report.of_target].map(|found| found.largest[0] < found.largest[1]);
+    if open.contains(&true) {
         line(
             "note",
-            &format!(
-                "{} without a counterpart",
-                words::counted(report.unmatched as u64, "end")
-            ),
+            "[a, b] is between a and b: dexels along one axis do not tell where a wall is between two of their lines",
         );
     }
     for warning in &report.warnings {
@@ -97,11 +97,23 @@ fn length(value: f64) -> String {
     words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
 }
 
-fn words_of(deviation: &DeviationSummary) -> String {
-    if deviation.count == 0 && deviation.max == 0.0 {
-        return "nothing beyond the tolerance".to_owned();
+/// What a length may be: one number if it is known.
+fn range([least, most]: [f64; 2]) -> String {
+    if length(least) == length(most) {
+        length(least)
+    } else {
+        format!("[{}, {}]", length(least), length(most))
     }
-    let [max, mean] = [deviation.max, deviation.mean].map(length);
-    let count = words::counted(deviation.count as u64, "end");
-    format!("up to {max}, mean {mean} mm, at {count}")
+}
+
+fn words_of(deviation: &DeviationSummary) -> String {
+    let largest = range([deviation.max, deviation.at_most.unwrap_or(deviation.max)]);
+    match (deviation.count, deviation.at_most) {
+        (0, None) if deviation.max == 0.0 => "nothing beyond the tolerance".to_owned(),
+        (0, _) => format!("largest {largest} mm"),
+        (count, _) => {
+            let (mean, count) = (length(deviation.mean), words::counted(count as u64, "point"));
+            format!("largest {largest}, mean {mean} mm, at {count} of the part")
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 mod ci;
 mod command;
+mod comparison;
 mod directions;
 mod exchange;
 mod frames;

@@ -31,7 +31,7 @@ impl Dexels {
     /// ```
     #[must_use]
     pub fn nearest_end(&self, point: impl Into<[f64; 3]>) -> Option<NearestEnd> {
-        self.nearest_of(point.into(), |_| true)
+        self.nearest_of(point.into(), f64::INFINITY, |_| true)
     }
 
     /// The source of the surface at or near a point of the world: that of the nearest interval end, if one is within
@@ -42,8 +42,8 @@ impl Dexels {
         (nearest.distance <= reach).then_some(nearest.end.source)
     }
 
-    /// The nearest end that passes the filter.
-    pub(crate) fn nearest_of(&self, point: [f64; 3], wanted: impl Fn(&End) -> bool) -> Option<NearestEnd> {
+    /// The nearest end that passes the filter, no farther than `reach`.
+    pub(crate) fn nearest_of(&self, point: [f64; 3], reach: f64, wanted: impl Fn(&End) -> bool) -> Option<NearestEnd> {
         if !point.iter().all(|c| c.is_finite()) {
             return None;
         }
@@ -57,13 +57,13 @@ impl Dexels {
         for ring in 0..cells[0].max(cells[1]) {
             // Lines of this ring are at least this far from the point if it is on the grid, and farther otherwise.
             let least = (ring as f64 - 0.5).max(0.0) * finest;
-            if best.as_ref().is_some_and(|best| best.distance < least) {
+            if best.as_ref().map_or(reach, |best| best.distance) < least {
                 break;
             }
             for [i, j] in ring_around(home, ring, cells) {
                 let flat = (grid.x(i) - p[0]).hypot(grid.y(j) - p[1]);
                 let line = grid.number(i, j);
-                if best.as_ref().is_some_and(|best| best.distance < flat) {
+                if best.as_ref().map_or(reach, |best| best.distance) < flat {
                     continue;
                 }
                 for interval in self.at(line) {
@@ -72,7 +72,7 @@ impl Dexels {
                         let nearer = |best: &NearestEnd| {
                             distance < best.distance || (distance == best.distance && line < best.line)
                         };
-                        if wanted(&end) && best.as_ref().is_none_or(nearer) {
+                        if distance <= reach && wanted(&end) && best.as_ref().is_none_or(nearer) {
                             best = Some(NearestEnd { line, end, distance });
                         }
                     }

@@ -3,6 +3,7 @@
 use super::distance::{DistanceTo, TreeNode, along};
 use crate::vector::{cross, dot, sub};
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// Directions of no symmetry, of length 1 or so.
 const DIRECTIONS: [[f64; 3]; 4] = [
@@ -35,10 +36,14 @@ impl TreeNode {
 }
 
 impl DistanceTo {
-    /// The distance from `p` along the unit vector `direction` to the first triangle, if it is farther than `least`.
+    /// The distance from `p` along the unit vector `direction` to the first triangle, if it is in a range.
     #[must_use]
-    pub(super) fn first_hit(&self, p: [f64; 3], direction: [f64; 3], least: f64) -> Option<f64> {
-        let mut best = f64::INFINITY;
+    pub(super) fn first_hit(&self, p: [f64; 3], direction: [f64; 3], range: Range<f64>) -> Option<f64> {
+        let Range {
+            start: least,
+            end: reach,
+        } = range;
+        let mut best = reach;
         let mut open = SmallVec::<[u32; 64]>::new();
         open.extend(self.nodes.first().map(|_| 0));
         while let Some(number) = open.pop() {
@@ -70,7 +75,7 @@ impl DistanceTo {
                 }
             }
         }
-        best.is_finite().then_some(best)
+        (best < reach).then_some(best)
     }
 
     /// How often the triangles wind about a point, if one of a few rays meets no edge.

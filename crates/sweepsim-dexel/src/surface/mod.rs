@@ -20,6 +20,7 @@ mod batch;
 mod edge;
 mod outline;
 mod square;
+mod steps;
 mod wall;
 
 use crate::dexels::Dexels;
@@ -32,6 +33,7 @@ use outline::Outline;
 use rayon::prelude::*;
 use square::Square;
 use std::collections::HashMap;
+pub(crate) use steps::{Step, steps};
 
 /// Cosine of 40°: a triangle does not share a vertex whose normal is farther than this from its own.
 const CRISP: f64 = 0.766;
@@ -91,7 +93,7 @@ pub(crate) fn sources_in(sets: &[&Dexels], mesh: &Mesh) -> Vec<Source> {
     let source = |(number, place): (usize, &[f64; 3])| {
         let cut = mesh.cut.get(number).copied().unwrap_or(false);
         let ends = sets.iter().filter(|_| cut);
-        ends.filter_map(|set| set.nearest_of(*place, |end| end.source.is_cut()))
+        ends.filter_map(|set| set.nearest_of(*place, f64::INFINITY, |end| end.source.is_cut()))
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
             .map_or(Source::Stock, |nearest| nearest.end.source)
     };

@@ -1,12 +1,14 @@
 //! `report.json`: the results of a run, or of a comparison, for scripts.
 
 mod ci;
+mod comparison;
 mod junit;
 mod sarif;
 mod statement;
 mod work;
 
 pub use ci::{Annotation, AnnotationLevel, CiCase, CiProgram};
+pub use comparison::{ComparisonReport, HistogramBar, SurfaceDeviation};
 pub use junit::to_junit;
 pub use sarif::to_sarif;
 pub use statement::{Measure, OpenPlace, Statement, StatementState, StatementWitness};
@@ -121,6 +123,9 @@ impl ReportedDexel {
 pub struct DeviationSummary {
     /// The largest that was found: no bound of what is between the dexels.
     pub max: f64,
+    /// What the largest may be at most, where the files leave open where a wall is (`compare`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most: Option<f64>,
     /// The mean over the samples that deviate.
     pub mean: f64,
     /// The root mean square over these samples.
@@ -290,92 +295,6 @@ pub struct PathSummary {
     pub moves: usize,
     /// The volume, in mm³.
     pub removed: f64,
-}
-
-/// How a part differs from its target. Lengths are in mm, areas in mm², volumes in mm³.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct ComparisonReport {
-    /// The file of the part.
-    pub part: String,
-    /// The file of its target.
-    pub target: String,
-    /// The number of dexels in x and y used for the comparison.
-    pub cells: [usize; 2],
-    /// Distances up to this count as 0.
-    pub tolerance: f64,
-    /// What of the request could not be done, each in one sentence.
-    #[serde(default)]
-    pub warnings: Vec<String>,
-    /// The duration of each phase, in order.
-    pub seconds: IndexMap<String, f64>,
-    /// The volume of the part.
-    pub volume: f64,
-    /// The volume of the target.
-    pub target_volume: f64,
-    /// The volume of the part outside the target.
-    pub excess_volume: f64,
-    /// The volume of the target missing from the part.
-    pub missing_volume: f64,
-    /// The area of the part's surface that has a counterpart.
-    pub area: f64,
-    /// The number of interval ends without a counterpart.
-    pub unmatched: usize,
-    /// The mean distance over the area, positive outside the target.
-    pub mean: f64,
-    /// The root mean square of the distance over the area.
-    pub rms: f64,
-    /// Where the part's surface is inside the target; depths are positive.
-    pub gouge: DeviationSummary,
-    /// Where the part's surface is outside the target.
-    pub excess: DeviationSummary,
-    /// The furthest point of the part's surface.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub furthest_of_part: Option<Furthest>,
-    /// The furthest point of the target's surface.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub furthest_of_target: Option<Furthest>,
-    /// The limits for gouges and for excess, outside of regions with their own.
-    #[serde(default)]
-    pub limits: [f64; 2],
-    /// Connected pieces of material that are missing, or left, beyond their limits, the deepest first, gouges before
-    /// excess.
-    #[serde(default)]
-    pub regions: Vec<ReportedRegion>,
-    /// Area by distance.
-    pub histogram: Vec<HistogramBar>,
-}
-
-/// The point of one surface that is furthest from the other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Furthest {
-    /// The position.
-    pub place: [f64; 3],
-    /// The distance from the other surface, negative inside.
-    pub distance: f64,
-}
-
-/// The area at distances in a range. The first and the last bar include everything beyond them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HistogramBar {
-    /// The lower end of the range.
-    pub from: f64,
-    /// The upper end of the range.
-    pub to: f64,
-    /// The area.
-    pub area: f64,
-}
-
-impl ComparisonReport {
-    /// The report as JSON. Numbers that are not finite become `null`.
-    ///
-    /// # Errors
-    /// As [`Report::to_json`].
-    pub fn to_json(&self) -> serde_json::Result<String> {
-        let mut text = serde_json::to_string_pretty(self)?;
-        text.push('\n');
-        Ok(text)
-    }
 }
 
 impl Report {

@@ -1,5 +1,6 @@
 //! How a part differs from its target.
 
+use super::deviation;
 use super::solid::{GridOptions, Solid};
 use crate::base::{JobError, Sink};
 use crate::request::ViewOptions;
@@ -10,17 +11,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 use sweepsim::Monitor;
 use sweepsim::verify::deviations;
-use sweepsim_dexel::{
-    Comparison, Dexels, DistanceTo, Grid, Mesh, Nearest, Operation, TriangleSoup, compare_tri_with_mesh,
-    compare_with_mesh,
-};
+use sweepsim_dexel::{Dexels, Grid, Mesh, Operation, Stock, StockError, Surface, TriangleSoup};
 use sweepsim_formats::{
-    ComparisonReport, DeviationSummary, Furthest, HistogramBar, Job, LimitRegion, Limits, MeshFormat, RegionPlace,
-    Target as Goal, read_coloured_mesh_file,
+    ComparisonReport, Job, LimitRegion, Limits, MeshFormat, RegionPlace, Target as Goal, read_coloured_mesh_file,
 };
-
-/// Bars of the histogram.
-const BARS: usize = 20;
 
 /// The limits of deviations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -162,40 +156,18 @@ impl Pair<'_> {
             Solid::Dexels(_) | Solid::TriDexels(_) => soup(&goal),
             Solid::Mesh(target) => soup(target),
         };
-        let found = match &part {
-            Solid::TriDexels(part) => compare_tri_with_mesh(part, &surface),
-            Solid::Dexels(_) | Solid::Mesh(_) => compare_with_mesh(&dexels, &surface),
-        };
-        let found = found.map_err(|error| JobError::file(&request.target, error))?;
-        describe(&mut report, request, &found);
+        let failed = |error| JobError::file(&request.target, error);
+        volumes(&mut report, &dexels, &surface).map_err(failed)?;
         regions(&mut report, request, &dexels, surface)?;
         report.cells = grid.cells();
-        let tree = DistanceTo::new(&soup(&goal))?;
+        let soups = [&mesh, &goal].map(soup);
+        let (part, target) = (part.to_compare(&soups[0])?, target.to_compare(&soups[1])?);
         let [dx, dy] = grid.spacing();
-        let spacing = dx.min(dy);
-        // Of dexels only the ends are exact, not the triangles between them.
-        report.furthest_of_part = match &part {
-            Solid::Mesh(_) => tree.furthest(&soup(&mesh), spacing).map(furthest_of),
-            Solid::Dexels(dexels) => furthest_end(dexels, |place, _| tree.nearest(place)),
-            Solid::TriDexels(part) => {
-                let of = |set| furthest_end(set, |place, _| tree.nearest(place));
-                part.sets().iter().filter_map(of).reduce(further)
-            }
-        };
-        let own = DistanceTo::new(&soup(&mesh))?;
-        report.furthest_of_target = match &target {
-            Solid::Mesh(_) => own.most_missing(&soup(&goal), &tree, spacing).map(furthest_of),
-            Solid::Dexels(dexels) => furthest_end(dexels, |place, normal| own.missing_at(place, normal, &tree)),
-            Solid::TriDexels(target) => {
-                let of = |set| furthest_end(set, |place, normal| own.missing_at(place, normal, &tree));
-                target.sets().iter().filter_map(of).reduce(further)
-            }
-        };
-        worst(&mut report, request.tolerance);
+        deviation::describe(&mut report, [&part, &target], dx.min(dy));
         let seconds = start.elapsed().as_secs_f64();
         report.seconds.insert("compare".to_owned(), seconds);
         let start = Instant::now();
-        let values = values(&mesh, &tree);
+        let values = values(&mesh, &target);
         let finite = values.iter().copied().filter(|v| v.is_finite());
         let largest = finite.fold(0.0, |a: f32, v| a.max(v.abs()));
         let range = request
@@ -266,55 +238,16 @@ fn regions(
     Ok(())
 }
 
-/// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has
-/// no counterpart.
-fn worst(report: &mut ComparisonReport, tolerance: f64) {
-    let of_part = report.furthest_of_part.map(|furthest| furthest.distance);
-    // A point of the target outside the part: there the part is missing.
-    let of_target = report.furthest_of_target.map(|furthest| -furthest.distance);
-    for distance in [of_part, of_target].into_iter().flatten() {
-        let side = if distance < 0.0 {
-            &mut report.gouge
-        } else {
-            &mut report.excess
-        };
-        if distance.abs() > tolerance {
-            side.max = side.max.max(distance.abs());
-        }
-    }
-}
-
-/// The end of dexels that is farthest from another surface: `of` gets its place and its normal.
-fn furthest_end(dexels: &Dexels, of: impl Fn([f64; 3], [f64; 3]) -> Option<Nearest> + Sync) -> Option<Furthest> {
-    use rayon::prelude::*;
-    let (grid, frame) = (dexels.grid(), dexels.grid().frame());
-    let lines: Vec<usize> = dexels.iter().map(|(line, _)| line).collect();
-    let of_line = |line: &usize| {
-        let (i, j) = grid.place(*line);
-        let ends = dexels
-            .at(*line)
-            .iter()
-            .flat_map(|interval| [interval.lower, interval.upper]);
-        let found = ends.filter_map(|end| {
-            let place = frame.to_world([grid.x(i), grid.y(j), end.z]);
-            let near = of(place, frame.turn_to_world(end.normal.map(f64::from)))?;
-            Some(furthest_of((place, near)))
-        });
-        found.reduce(further)
-    };
-    let found: Vec<Option<Furthest>> = lines.par_iter().map(of_line).collect();
-    found.into_iter().flatten().reduce(further)
-}
-
-fn further(a: Furthest, b: Furthest) -> Furthest {
-    if b.distance.abs() > a.distance.abs() { b } else { a }
-}
-
-fn furthest_of((place, near): ([f64; 3], Nearest)) -> Furthest {
-    Furthest {
-        place,
-        distance: near.distance,
-    }
+/// Volumes on the lines of the part's dexels: of three sets on those along z, as in all other figures.
+fn volumes(report: &mut ComparisonReport, dexels: &Dexels, target: &TriangleSoup) -> Result<(), StockError> {
+    let goal = Stock::Mesh(target.clone()).dexels(dexels.grid())?;
+    let mut common = dexels.clone();
+    common.combine(Operation::Intersection, &goal)?;
+    report.volume = dexels.volume();
+    report.target_volume = goal.volume();
+    report.excess_volume = (dexels.volume() - common.volume()).max(0.0);
+    report.missing_volume = (goal.volume() - common.volume()).max(0.0);
+    Ok(())
 }
 
 /// Rounds up to a number of one or two digits, for a readable scale.
@@ -329,58 +262,13 @@ fn round(value: f64) -> f64 {
         .unwrap_or(10.0 * whole)
 }
 
-/// The distance of each vertex from the target, positive outside.
-fn values(mesh: &Mesh, tree: &DistanceTo) -> Vec<f32> {
+/// The distance of each vertex from the target, positive outside: as near to 0 as it may be.
+fn values(mesh: &Mesh, target: &Surface<'_>) -> Vec<f32> {
     use rayon::prelude::*;
-    let places = mesh.vertices.par_iter();
-    places
-        .map(|p| tree.nearest(*p).map_or(f32::NAN, |near| near.distance as f32))
-        .collect()
-}
-
-/// Fills in the report.
-fn describe(report: &mut ComparisonReport, options: &CompareRequest, found: &Comparison) {
-    report.volume = found.volume;
-    report.target_volume = found.target;
-    report.excess_volume = found.excess;
-    report.missing_volume = found.missing;
-    report.area = found.area();
-    report.unmatched = found.unmatched();
-    report.mean = found.mean();
-    report.rms = found.rms();
-    let side = |sign: f64| {
-        let mut all = DeviationSummary::default();
-        for (distance, area) in found
-            .deviations
-            .iter()
-            .filter_map(|d| Some((sign * d.distance?, d.area)))
-        {
-            if distance > options.tolerance {
-                all.max = all.max.max(distance);
-                all.mean += area * distance;
-                all.rms += area * distance * distance;
-                all.area += area;
-                all.count += 1;
-            }
-        }
-        if all.area > 0.0 {
-            all.mean /= all.area;
-            all.rms = (all.rms / all.area).sqrt();
-        }
-        all
+    let value = |p: &[f64; 3]| {
+        target
+            .distance(*p)
+            .map_or(f32::NAN, |range| range.nearest_to_0() as f32)
     };
-    report.gouge = side(-1.0);
-    report.excess = side(1.0);
-    if let Some([low, high]) = found.range() {
-        let step = (high - low) / BARS as f64;
-        let limit = |k: usize| low + step * k as f64;
-        let limits: Vec<f64> = (1..BARS).map(limit).collect();
-        let areas = found.histogram(&limits);
-        let bars = areas.iter().enumerate().map(|(k, area)| HistogramBar {
-            from: limit(k),
-            to: limit(k + 1),
-            area: *area,
-        });
-        report.histogram = bars.collect();
-    }
+    mesh.vertices.par_iter().map(value).collect()
 }

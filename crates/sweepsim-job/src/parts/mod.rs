@@ -2,6 +2,7 @@
 
 mod compare;
 mod convert;
+mod deviation;
 mod solid;
 
 pub use compare::{CompareRequest, DeviationLimits, Difference, Pair};

@@ -5,7 +5,7 @@ use crate::base::{JobError, check_room};
 use crate::show::{CRISP, soup};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriDexels};
+use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, Surface, TriDexels, TriangleSoup};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_file, read_mesh_file, read_tri_dexels_file};
 
 /// The default number of dexels along the longer side of a mesh.
@@ -55,6 +55,15 @@ impl Solid {
             Self::Dexels(dexels) => dexels.surface(),
             Self::TriDexels(solid) => solid.surface()?.crisp(CRISP),
             Self::Mesh(mesh) => mesh.crisp(CRISP),
+        }
+    }
+
+    /// The surface, to be compared: of a mesh as `triangles`, which are those of it.
+    pub fn to_compare<'a>(&'a self, triangles: &'a TriangleSoup) -> Result<Surface<'a>, MeshError> {
+        match self {
+            Self::Dexels(dexels) => Surface::of_dexels(dexels),
+            Self::TriDexels(solid) => Surface::of_tri_dexels(solid),
+            Self::Mesh(_) => Surface::of_triangles(triangles),
         }
     }
 
