@@ -125,14 +125,14 @@ fn mouse(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
         &format!("the picture is empty: {first}"),
     )?;
     expect(
-        browser.value("document.getElementById('verdict').innerText.includes('May not be run: 5 moves do harm')")?
+        browser.value("document.getElementById('verdict').innerText.includes('May not be run: 7 moves do harm')")?
             == true,
         "the verdict is missing",
     )?;
     // A finding turns the view, and shows its line.
     let before = camera(browser)?;
     let at_end = browser.value("document.getElementById('canvas').dataset.moment")?;
-    click(browser, "[data-finding='5']")?;
+    click(browser, "[data-finding='6']")?;
     let after = camera(browser)?;
     expect(before != after, "a finding does not move the camera")?;
     expect(
