@@ -51,8 +51,10 @@ pub(crate) struct Near<'a> {
     pub during: During<'a>,
     pub cell: &'a Cell,
     pub surface: &'a Surface,
-    /// What is to be shown: it is no deeper. Less than 0 of distances.
+    /// What is to be shown: it is no deeper.
     pub most: f64,
+    /// Whether that is a distance. What is far from the surface may be deep inside.
+    pub apart: bool,
 }
 
 impl Near<'_> {
@@ -61,7 +63,7 @@ impl Near<'_> {
         let nothing = |is_empty: bool| is_empty.then_some(f64::NEG_INFINITY);
         match (kind, normals) {
             (2, _) => {
-                let distance = (-self.most).max(0.0);
+                let distance = if self.apart { -self.most } else { 0.0 };
                 nothing(
                     matches!(self.during, During::Node(node) if node.misses(&self.cell.centre, self.cell.half, distance)),
                 )
@@ -69,11 +71,11 @@ impl Near<'_> {
             (5, [n]) => {
                 let (cell, solid) = (self.cell.support_up(n), self.reach_up(&scaled(n, -1.0)));
                 let apart = self.along(cell, solid, n);
-                (apart < 0.0).then_some(if self.most < 0.0 { apart } else { f64::NEG_INFINITY })
+                (apart < 0.0).then_some(if self.apart { apart } else { f64::NEG_INFINITY })
             }
             (6, [n]) => self.lifted(n),
-            (7 | 8, _) if self.most >= 0.0 => self.lifted_above(normals),
-            (9, [n, m]) if self.most >= 0.0 => self.slab(n, m),
+            (7 | 8, _) if !self.apart => self.lifted_above(normals),
+            (9, [n, m]) if !self.apart => self.slab(n, m),
             // Clear cells are known, and middles.
             _ => None,
         }
@@ -113,7 +115,7 @@ impl Near<'_> {
     /// Lifted along one normal.
     fn lifted(&self, n: &V3) -> Option<f64> {
         let down = scaled(n, -1.0);
-        if self.most < 0.0 {
+        if self.apart {
             return Some(self.along(self.cell.top_up(n)?, self.reach_up(&down), n));
         }
         let top = self.top_of_outside(n)?;

@@ -160,7 +160,7 @@ impl<'a> Walk<'a> {
             }
             1 => {
                 let reached = self.reader.byte()?;
-                let far = (self.more - self.most).max(0.0);
+                let far = if self.is_apart() { self.more - self.most } else { 0.0 };
                 let missed = |centre: V3| matches!(when, When::Node(k) if self.run.nodes[k].misses(&centre, 0.5 * cell.half, far));
                 let left_out = (0..8).filter(|octant| reached >> octant & 1 == 0);
                 if !{ left_out }.all(|octant| cell.centre_of_child(octant).is_some_and(missed)) {
@@ -225,14 +225,19 @@ impl<'a> Walk<'a> {
         Some(normal)
     }
 
+    /// Whether a distance is claimed. A depth of 0 is none, though it has to be shown with some room.
+    fn is_apart(&self) -> bool {
+        self.most < 0.0
+    }
+
     /// No point is deeper, as far as the leaf says.
     fn bound(&self, cell: &Cell, when: When, kind: u8, normals: &[V3]) -> Option<f64> {
         // Whatever is said of it: nothing of the target is in the cell, or of its surface.
         let (is_clear, is_outside) = cell.is_clear();
-        if is_outside || is_clear && self.most < 0.0 {
+        if is_outside || is_clear && self.is_apart() {
             return Some(f64::NEG_INFINITY);
         }
-        if kind == 4 && self.most >= 0.0 {
+        if kind == 4 && !self.is_apart() {
             let depth = cell.depth_by_middle(self.surface);
             return depth.is_finite().then_some(depth.max(0.0));
         }
@@ -245,7 +250,7 @@ impl<'a> Walk<'a> {
                 let middle = scaled(&add(&ends[0].tip, &ends[1].tip), 0.5);
                 let far = norm_up(&sub(&middle, &cell.centre)) + 3_f64.sqrt() * cell.half * MORE;
                 let far = far + own.travel(duration) + ends[0].tip_error + ends[1].tip_error;
-                let far = if self.most < 0.0 {
+                let far = if self.is_apart() {
                     f64::INFINITY
                 } else {
                     far * MORE + 1e-12 * size(&cell.centre)
@@ -258,13 +263,14 @@ impl<'a> Walk<'a> {
                 }
             }
         };
-        let (run, surface, most) = (self.run, self.surface, self.most - self.more);
+        let (run, surface, apart) = (self.run, self.surface, self.is_apart());
         Near {
             run,
             during,
             cell,
             surface,
-            most,
+            most: self.most - self.more,
+            apart,
         }
         .bound(kind, normals)
     }

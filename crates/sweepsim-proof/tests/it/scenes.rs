@@ -212,7 +212,7 @@ impl SceneOf {
 }
 
 /// Checks one scene against samples: whether the cutter cuts at all, and whether the enclosure is wider than wanted.
-fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], TestCaseError> {
+fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], TestCaseError> {
     let Some(path) = scene.path() else {
         return Err(TestCaseError::reject("no such arc"));
     };
@@ -251,9 +251,8 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], T
         prop_assert!(own.xy().norm() <= radius + 1e-5, "{own} is not in the tool");
     }
     let own = certified.checked();
-    // A checker may refuse what holds; what it accepts does.
-    let refused = !own.is_proven();
-    prop_assert!(refused || sampled <= own.bound.max(1e-9) && own.bound <= found.bound + 1e-6);
+    prop_assert!(own.is_proven(), "{:?}", own);
+    prop_assert!(sampled <= own.bound.max(1e-9) && own.bound <= found.bound + 1e-6);
     if sampled > 1e-6 {
         // Less than what there is is not proven.
         let mut claim = certified.claim.clone();
@@ -265,24 +264,23 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 3], T
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.
     let decided = known > limits.depth || found.bound <= limits.depth;
     prop_assert!(!wide || decided || !found.open.is_empty());
-    Ok([sampled > 0.02, wide, refused])
+    Ok([sampled > 0.02, wide])
 }
 
 fn run(cases: u32, density: (usize, usize)) {
-    let counts = Cell::new([0; 3]);
+    let counts = Cell::new([0; 2]);
     let mut runner = TestRunner::new(Config {
         failure_persistence: None,
         ..Config::with_cases(cases)
     });
     let done = runner.run(&scene(), |scene| {
         let (found, known) = (check(&scene, density)?, counts.get());
-        counts.set([0, 1, 2].map(|k| known[k] + u32::from(found[k])));
+        counts.set([0, 1].map(|k| known[k] + u32::from(found[k])));
         Ok(())
     });
     done.expect("all scenes hold");
-    let [cutting, wide, refused] = counts.get();
-    println!("{cutting} of {cases} cut, {wide} are wide, certificates of {refused} are refused");
-    assert!(refused * 20 <= cases, "{refused} of {cases}");
+    let [cutting, wide] = counts.get();
+    println!("{cutting} of {cases} cut, {wide} are wide");
     // Neither all cut nor none, and few enclosures, about a tenth, are wider than wanted.
     assert!(cutting > cases / 4 && cutting < cases, "{cutting} of {cases}");
     assert!(wide < cases / 3, "{wide} of {cases}");
@@ -305,8 +303,8 @@ fn rounding_does_not_decide_below_which_plane_a_triangle_is() {
             [0.464_105_457_706_379_56, 0.626_265_789_863_317_5, 1.0],
         ],
     };
-    let [cuts, _, refused] = check(&scene, (16, 4)).expect("it is certified");
-    assert!(cuts && !refused);
+    let [cuts, _] = check(&scene, (16, 4)).expect("it is certified");
+    assert!(cuts);
 }
 
 #[test]
@@ -318,4 +316,22 @@ fn random_scenes_are_enclosed() {
 #[ignore = "takes a quarter of an hour"]
 fn two_thousand_random_scenes_are_enclosed() {
     run(2000, (16, 4));
+}
+
+/// Nothing touches, and the path is followed within a deviation: a depth of 0 is shown with that room, and is no distance.
+#[test]
+fn a_lollipop_beside_a_sphere_is_certified() {
+    let scene = SceneOf {
+        target: 1,
+        size: 0.596_203_875_789_958_5,
+        tool: 3,
+        motion: 3,
+        tips: [
+            [-2.756_332_230_793_837, 5.875_588_490_172_559, -0.675_423_099_131_097_1],
+            [3.230_898_077_171_465, 6.317_671_187_845_115, 0.0],
+        ],
+        axes: [[0.0, 0.0, 1.0]; 2],
+    };
+    let [cuts, _] = check(&scene, (16, 4)).expect("it is certified");
+    assert!(!cuts);
 }
