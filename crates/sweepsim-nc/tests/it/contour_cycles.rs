@@ -212,8 +212,26 @@ fn contours_that_are_not_understood_are_said() {
     let said = &missing.assumptions[0];
     assert!(said.changes_verdict && said.what == "the moves of cycle 22", "{said}");
     let missing = sinumerik("CYCLE62(\"NONE\",1,,)\nCYCLE63(\"P\",1,50,2,2,-8,500)\nCYCLE64(\"P\",1)\nG1 X5 F9\n");
-    let said: Vec<&str> = missing.assumptions.iter().map(|one| one.what.as_str()).collect();
-    assert_eq!(said, ["the moves of CYCLE63", "the moves of CYCLE64"]);
+    let mut said: Vec<&str> = missing.assumptions.iter().map(|one| one.what.as_str()).collect();
+    said.sort_unstable();
+    let orders = ["CYCLE62", "CYCLE63"].map(|name| format!("the order of the parameters of {name}"));
+    assert_eq!(
+        said,
+        ["the moves of CYCLE63", "the moves of CYCLE64", &orders[0], &orders[1]]
+    );
+    // They may change the verdict, and are not taken where nothing may be assumed.
+    assert!(missing.assumptions.iter().all(|one| one.changes_verdict));
+    let mut strict = options();
+    strict.strict = true;
+    for call in [
+        "SLOT2(50,0,2,-4,,1,70,10,5,5,30,20,0,100,500,4)",
+        "CYCLE70(50,0,2,-9,20,1,0,1.5,1,0,500,0,10,20)",
+    ] {
+        let error = siemens::read(&format!("T1 D1\nM6\nG0 X0 Y0 Z50\n{call}\n"), &strict)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("no manual was at hand"), "{error}");
+    }
     assert_eq!(missing.poses.last().unwrap().pose.tip(), [5.0, 0.0, 50.0]);
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, hole_cycle, thread, workpiece};
+use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, UNCHECKED, hole_cycle, thread, workpiece};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
 use super::state::{Modal, Motion, Operation, PoleFrom};
@@ -10,6 +10,7 @@ use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -167,6 +168,9 @@ impl Reader<'_> {
             values: &values,
             unit,
         };
+        if !known && UNCHECKED.contains(&name) {
+            self.unchecked(name).map_err(here)?;
+        }
         if !known && CONTOURS.contains(&name) {
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
             return self.contour_cycle(&cycle).map_err(here);
@@ -219,6 +223,18 @@ impl Reader<'_> {
                 .map_err(|problem| (problem, words.span("P")))?;
             self.pending = Some((name.to_owned(), values, times as usize));
         }
+        Ok(())
+    }
+
+    /// Says that a cycle may be read wrongly.
+    fn unchecked(&mut self, name: &str) -> Result<(), NcProblem> {
+        if self.track.strict() {
+            let expected = "no manual was at hand for the order of its parameters; expected its moves written out";
+            return Err(NcProblem::unsupported(format!("{name} is"), expected));
+        }
+        let what = format!("the order of the parameters of {name}");
+        let taken = "as posts write it: no manual was at hand";
+        self.track.assume(Assumption::new(what, taken, "the moves written out"));
         Ok(())
     }
 

@@ -56,6 +56,29 @@ pub(super) struct Ring {
 }
 
 impl Pocket {
+    /// A point at its place, milled all at once between levels: where the tool is at last, where it begins, the surface and the bottom.
+    pub fn new([end, start, surface, bottom]: [f64; 4], tool: f64) -> Self {
+        Self {
+            half: [0.0; 2],
+            corner: 0.0,
+            raw: None,
+            aside: [0.0; 2],
+            turn: 0.0,
+            start,
+            surface,
+            bottom,
+            end,
+            infeed: 0.0,
+            left: [0.0; 2],
+            rim_alone: false,
+            tool,
+            step: tool,
+            feed: None,
+            plunge: None,
+            clockwise: false,
+        }
+    }
+
     /// The diameter of a tool of unknown size that mills this shape.
     pub fn widest_unknown_tool(&self) -> f64 {
         let width = 2.0 * self.half[0].min(self.half[1]);

@@ -18,24 +18,11 @@ impl Reader<'_> {
         let surface = defined.span(5)?;
         let start = surface + defined.span(6)?.abs();
         let overlap = defined.find(2)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0);
+        let end = start.max(defined.length(7)?.unwrap_or(start));
+        let bottom = surface + defined.depth(1)?;
         let levels = Pocket {
-            half: [0.0; 2],
-            corner: 0.0,
-            raw: None,
-            aside: [0.0; 2],
-            turn: 0.0,
-            start,
-            surface,
-            bottom: surface + defined.depth(1)?,
-            end: start.max(defined.length(7)?.unwrap_or(start)),
-            infeed: 0.0,
             left: [defined.span(3)?, defined.span(4)?],
-            rim_alone: false,
-            tool: 0.0,
-            step: 0.0,
-            feed: None,
-            plunge: None,
-            clockwise: false,
+            ..Pocket::new([end, start, surface, bottom], 0.0)
         };
         self.cycles.contours.levels = Some(levels);
         self.cycles.contours.overlap = overlap;

@@ -52,24 +52,15 @@ fn levels(defined: &Defined, tool: f64) -> Result<Pocket, Located> {
         false => [0.0; 2],
     };
     let infeed = defined.length(if kind == 2.0 { 338 } else { 202 })?;
+    let end = start.max(surface + defined.span(204)?);
     Ok(Pocket {
-        half: [0.0; 2],
-        corner: 0.0,
-        raw: None,
-        aside: [0.0; 2],
-        turn: 0.0,
-        start,
-        surface,
-        bottom: surface,
-        end: start.max(surface + defined.span(204)?),
         infeed: infeed.unwrap_or(0.0),
         left,
         rim_alone: kind == 2.0,
-        tool,
         step: tool * defined.find(370)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0),
         feed: defined.find(207)?,
         plunge: defined.find(206)?,
-        clockwise: false,
+        ..Pocket::new([end, start, surface, surface], tool)
     })
 }
 

@@ -1,6 +1,7 @@
 //! Cycles on contours: `CYCLE62` names them, `CYCLE63` mills the pocket within the first one beside the others, `CYCLE72` goes along one.
 //!
-//! Source: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Manual Job Planning*, as posts write it too.
+//! Source: the order of the parameters of `CYCLE72` is that of Siemens, *NC programming, Programming Manual*, 12/2019 (6FC5398-2EP40-0BA0), section 3.25; of
+//! [the others](super::UNCHECKED) no manual was at hand.
 
 use super::arguments::Arguments;
 use crate::controls::run::Running;
@@ -12,6 +13,8 @@ use crate::text::error::{Located, NcProblem};
 
 /// The most blocks of a contour.
 const MOST_BLOCKS: usize = 100_000;
+/// The step between lines where none is given, in radii of the tool.
+const WIDE: f64 = 1.6;
 
 /// The cycles on contours. `CYCLE64` drills where `CYCLE63` plunges: its moves are not known.
 pub(in crate::controls::siemens) const CONTOURS: [&str; 3] = ["CYCLE62", "CYCLE63", "CYCLE72"];
@@ -118,28 +121,6 @@ impl Reader<'_> {
     }
 }
 
-fn levels(end: f64, start: f64, surface: f64, bottom: f64, tool: f64) -> Pocket {
-    Pocket {
-        half: [0.0; 2],
-        corner: 0.0,
-        raw: None,
-        aside: [0.0; 2],
-        turn: 0.0,
-        start,
-        surface,
-        bottom,
-        end,
-        infeed: 0.0,
-        left: [0.0; 2],
-        rim_alone: false,
-        tool,
-        step: 0.8 * 2.0 * tool,
-        feed: None,
-        plunge: None,
-        clockwise: false,
-    }
-}
-
 /// `CYCLE63(PRG, VARI, RP, Z0, SC, Z1, F, FZ, DXY, DZ, UXY, UZ, CDIR, …)`: the last digit of `VARI` is 1 for roughing, 3 for the floor, 4 for the edge.
 fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Option<ContourCycle>, NcProblem> {
     let kind = arguments.get(1).unwrap_or(1.0) % 10.0;
@@ -159,7 +140,6 @@ fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Op
     let (step, infeed) = (arguments.length(8), arguments.length(9).abs());
     let [side, floor] = [arguments.length(10), arguments.length(11)];
     let start = surface + arguments.length(4).abs();
-    let levels = levels(end.max(start), start, surface, bottom, tool);
     Ok(Some(ContourCycle {
         work: Work::Area {
             pockets: courses,
@@ -174,10 +154,10 @@ fn area(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<Op
                 3.0 => [side, 0.0],
                 _ => [0.0; 2],
             },
-            step: if step > 0.0 { step } else { levels.step },
+            step: if step > 0.0 { step } else { WIDE * tool },
             feed: arguments.feed(6),
             plunge: arguments.feed(7),
-            ..levels
+            ..Pocket::new([end.max(start), start, surface, bottom], tool)
         },
     }))
 }
@@ -207,7 +187,7 @@ fn along(arguments: &Arguments, mut courses: Vec<Course>, tool: f64) -> Result<O
             left,
             feed: arguments.feed(8),
             plunge: arguments.feed(9),
-            ..levels(end.max(start), start, surface, bottom, tool)
+            ..Pocket::new([end.max(start), start, surface, bottom], tool)
         },
     }))
 }

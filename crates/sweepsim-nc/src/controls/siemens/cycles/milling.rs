@@ -1,7 +1,7 @@
 //! Milling cycles.
 //!
 //! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 was
-//! compared with two of them.
+//! compared with two of them. For [SLOT2](super::UNCHECKED) no manual was at hand.
 
 use super::arguments::Arguments;
 use crate::controls::siemens::interpreter::Reader;
@@ -34,28 +34,6 @@ pub(in crate::controls::siemens) fn milled(arguments: &Arguments, tool: f64) -> 
         "CYCLE61" => facing(arguments, tool),
         _ => return None,
     })
-}
-
-fn pocket([end, start, surface, bottom]: [f64; 4], tool: f64) -> Pocket {
-    Pocket {
-        half: [0.0; 2],
-        corner: 0.0,
-        raw: None,
-        aside: [0.0; 2],
-        turn: 0.0,
-        start,
-        surface,
-        bottom,
-        end,
-        infeed: 0.0,
-        left: [0.0; 2],
-        rim_alone: false,
-        tool,
-        step: tool,
-        feed: None,
-        plunge: None,
-        clockwise: false,
-    }
 }
 
 /// The sense of `CDIR`: 0 climbs, 1 does not, 2 is G2, 3 is G3.
@@ -100,7 +78,7 @@ fn rectangle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             feed: arguments.feed(13 + at),
             plunge: arguments.feed(14 + at),
             clockwise: clockwise(arguments.get(15 + at), stud),
-            ..pocket(levels, tool)
+            ..Pocket::new(levels, tool)
         },
         places: vec![([arguments.length(7 + at), arguments.length(8 + at)], 0.0)],
         bent: None,
@@ -132,7 +110,7 @@ fn circle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             feed: arguments.feed(10 + at),
             plunge: arguments.feed(11 + at),
             clockwise: clockwise(arguments.get(12 + at), stud),
-            ..pocket(levels, tool)
+            ..Pocket::new(levels, tool)
         },
         places: vec![([arguments.length(5 + at), arguments.length(6 + at)], 0.0)],
         bent: None,
@@ -151,7 +129,7 @@ fn facing(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             left: [0.0, arguments.length(10)],
             step: if step > 0.0 { step } else { 0.8 * 2.0 * tool },
             feed: arguments.feed(11),
-            ..pocket(arguments.levels(None)?, tool)
+            ..Pocket::new(arguments.levels(None)?, tool)
         },
         places: vec![(
             [arguments.length(4) + 0.5 * length, arguments.length(5) + 0.5 * width],
@@ -202,7 +180,7 @@ fn slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             feed: arguments.feed(13 + at),
             plunge: arguments.feed(12 + at),
             clockwise: wide && clockwise(arguments.get(16), false),
-            ..pocket(levels, tool)
+            ..Pocket::new(levels, tool)
         },
         places: (0..count).map(place).collect(),
         bent: None,
@@ -230,7 +208,7 @@ fn bent_slots(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             rim_alone: finishes,
             feed: arguments.feed(14),
             plunge: arguments.feed(13),
-            ..pocket(levels, tool)
+            ..Pocket::new(levels, tool)
         },
         places: (0..count).map(|k| ([x, y], first + f64::from(k) * step)).collect(),
         bent: Some([radius, long]),
