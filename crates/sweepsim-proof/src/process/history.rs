@@ -28,7 +28,7 @@ pub(super) struct History<'a> {
 /// Of some rings, which are held.
 pub(super) type Held = SmallVec<[bool; 16]>;
 
-/// As many stretches are tried for a part, those deepest around its middle.
+/// As many stretches are tried for a zone, those deepest around its middle.
 const TRIED: usize = 4;
 /// How much a place nearer to the axis counts, beside one that is deeper.
 const AXIS: f64 = 0.05;
@@ -47,8 +47,8 @@ struct Candidate<'a> {
 }
 
 impl History<'_> {
-    /// Which rings of a part were removed, as deep as `need` below the surface of one and the same convex solid: if all
-    /// of them, so was the part. And about how far from all that was removed its middle is, negative inside.
+    /// Which rings of a zone were removed, as deep as `need` below the surface of one and the same convex solid: if all
+    /// of them, so was the zone. And about how far from all that was removed its middle is, negative inside.
     pub fn held(&self, samples: &Samples, moment: Moment, need: f64) -> (Held, f64) {
         let (low, high) = samples.bounds();
         let middle = samples.middle();
@@ -70,7 +70,7 @@ impl History<'_> {
                         (value, time) = (level_at(level, &stretch.at(latest), &middle), latest);
                     }
                     nearest = nearest.min(value);
-                    // No solid holds all of a part without its middle.
+                    // No solid holds all of a zone without its middle.
                     if value > -need {
                         return true;
                     }
@@ -182,7 +182,7 @@ fn moved(samples: &Samples, candidate: &Candidate, need: f64, order: impl Fn(&[R
     match samples.ends() {
         Some([first, last]) if stretch.keeps_axis() => {
             // The solid is moved without turning: where it is between two times holds what is between both ends of the
-            // part, but for the bend of its path.
+            // zone, but for the bend of its path.
             let times = [first, last].map(best);
             let need = need + stretch.bend(0.0, (times[1] - times[0]).abs());
             let mut held = at(first, times[0], need);

@@ -1,4 +1,4 @@
-//! Circles and points that bound a part of a moving solid.
+//! Circles and points that bound a zone of a moving solid.
 
 use super::ring::{Ring, across};
 use crate::motion::{Placement, Stretch};
@@ -43,7 +43,7 @@ impl<'a> Turned<'a> {
     }
 }
 
-/// Rings whose hull holds a part.
+/// Rings whose hull holds a zone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Samples {
     pub rings: SmallVec<[Ring; 16]>,

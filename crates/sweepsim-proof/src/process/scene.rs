@@ -33,8 +33,8 @@ pub struct Room {
     pub distance: f64,
     /// How far the segments of a path may be from it.
     pub deviation: f64,
-    /// At most as many parts are looked at in the whole request.
-    pub parts: usize,
+    /// At most as many zones are looked at in the whole request.
+    pub zones: usize,
 }
 
 pub(super) struct Scene<'a> {
@@ -55,5 +55,5 @@ pub(super) struct Found {
     pub open: Vec<OpenBox>,
     /// How many places of each move are open.
     pub open_counts: BTreeMap<usize, usize>,
-    pub parts: usize,
+    pub zones: usize,
 }

@@ -27,12 +27,12 @@ pub struct Touched {
     /// How many they are.
     pub open_count: usize,
     /// Parts that were looked at.
-    pub parts: usize,
+    pub zones: usize,
 }
 
 /// So many moves are looked at together.
 const TOGETHER: usize = 64;
-/// At first, everything is looked at in so few parts.
+/// At first, everything is looked at in so few zones.
 const FIRST_LOOK: usize = 512;
 /// Coordinates of this size are exact to 1.
 const ROUNDING: f64 = 1e-12;
@@ -133,7 +133,7 @@ impl Scene<'_> {
         for look in 0..2 {
             let most = match look {
                 0 => FIRST_LOOK,
-                _ => (self.room.parts / open.len().max(1)).max(FIRST_LOOK),
+                _ => (self.room.zones / open.len().max(1)).max(FIRST_LOOK),
             };
             let (done, total) = (AtomicUsize::new(0), open.len());
             let of = |number: &usize| {
@@ -147,7 +147,7 @@ impl Scene<'_> {
             };
             let again: Option<Vec<Found>> = open.par_iter().with_max_len(1).map(of).collect();
             for (number, mut again) in open.iter().zip(again?) {
-                again.parts += found[*number].parts;
+                again.zones += found[*number].zones;
                 found[*number] = again;
             }
             open.retain(|number| !found[*number].open_counts.is_empty());
@@ -164,7 +164,7 @@ impl Scene<'_> {
                 .extend(found.moves.into_values().map(|witness| (path, witness)));
             touched.open.extend(found.open.into_iter().map(|open| (path, open)));
             touched.open_count += found.open_counts.values().sum::<usize>();
-            touched.parts += found.parts;
+            touched.zones += found.zones;
         }
         Some(touched)
     }
@@ -206,7 +206,7 @@ impl Scene<'_> {
             let count = near.len();
             for (k, number) in near.into_iter().enumerate() {
                 // What some have not needed is for the others.
-                let most = found.parts + most.saturating_sub(found.parts) / (count - k);
+                let most = found.zones + most.saturating_sub(found.zones) / (count - k);
                 let stretch = &stretches[number];
                 let is_rapid = (work.is_rapid)(stretch.number);
                 if self.movers == Movers::Rapids && !is_rapid {

@@ -1,9 +1,9 @@
-//! The search on a stretch of a path, with the parts first that may be deepest in material.
+//! The search on a stretch of a path, with the zones first that may be deepest in material.
 
 use super::history::Moment;
-use super::part::Part;
 use super::samples::{Samples, Turned};
 use super::scene::{Found, Scene};
+use super::zone::Zone;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
@@ -19,11 +19,11 @@ const BEND: f64 = 0.25;
 /// Where, between a body and the distance that is wanted, material is looked for.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.95];
 
-/// A part that is to be looked at: those first that may be deepest in material.
+/// A zone that is to be looked at: those first that may be deepest in material.
 struct Pending {
     score: f64,
     order: usize,
-    part: Part,
+    zone: Zone,
 }
 
 impl PartialEq for Pending {
@@ -46,11 +46,11 @@ impl Ord for Pending {
     }
 }
 
-/// What came of a part.
+/// What came of a zone.
 enum Visit {
     Free,
     /// Into smaller ones; none is deeper in material than about this.
-    Divided(Vec<Part>, f64),
+    Divided(Vec<Zone>, f64),
     Touching(Witness),
     Open,
 }
@@ -70,32 +70,32 @@ impl Search<'_> {
     pub fn look(&self, starts: bool, most: usize, found: &mut Found) {
         let mut open = BinaryHeap::new();
         let mut order = 0;
-        let mut push = |open: &mut BinaryHeap<Pending>, score: f64, part: Part| {
-            open.push(Pending { score, order, part });
+        let mut push = |open: &mut BinaryHeap<Pending>, score: f64, zone: Zone| {
+            open.push(Pending { score, order, zone });
             order += 1;
         };
-        push(&mut open, 0.0, Part::whole([0.0, 1.0], false));
+        push(&mut open, 0.0, Zone::whole([0.0, 1.0], false));
         if starts {
-            push(&mut open, 0.0, Part::whole([0.0, 0.0], true));
+            push(&mut open, 0.0, Zone::whole([0.0, 0.0], true));
         }
-        while let Some(Pending { mut part, .. }) = open.pop() {
-            if found.parts >= most {
-                self.leave(&part, found);
-                open.iter().for_each(|pending| self.leave(&pending.part, found));
+        while let Some(Pending { mut zone, .. }) = open.pop() {
+            if found.zones >= most {
+                self.leave(&zone, found);
+                open.iter().for_each(|pending| self.leave(&pending.zone, found));
                 return;
             }
-            found.parts += 1;
-            part.top = self.top(part.times);
-            match self.visit(&part) {
+            found.zones += 1;
+            zone.top = self.top(zone.times);
+            match self.visit(&zone) {
                 Visit::Free => {}
-                Visit::Divided(smaller, score) => smaller.into_iter().for_each(|part| push(&mut open, score, part)),
-                Visit::Open => self.leave(&part, found),
+                Visit::Divided(smaller, score) => smaller.into_iter().for_each(|zone| push(&mut open, score, zone)),
+                Visit::Open => self.leave(&zone, found),
                 Visit::Touching(witness) => {
                     let known = found.moves.entry(witness.number).or_insert_with(|| witness.clone());
                     if self.is_worse(&witness, known) {
                         *known = witness;
                     }
-                    // One place is enough for a move; its other parts would be many.
+                    // One place is enough for a move; its other zones would be many.
                     return;
                 }
             }
@@ -142,17 +142,17 @@ impl Search<'_> {
         }
     }
 
-    fn visit(&self, part: &Part) -> Visit {
+    fn visit(&self, zone: &Zone) -> Visit {
         let scene = self.scene;
-        let [from, to] = part.times;
+        let [from, to] = zone.times;
         let bend = self.turned.stretch.bend(self.solid.reach(), to - from);
         let need = scene.margin + bend;
-        let mut samples = part.samples(self.solid, &self.turned);
-        if samples.rings.is_empty() || !self.is_rapid && self.is_in_cutter(part) {
+        let mut samples = zone.samples(self.solid, &self.turned);
+        if samples.rings.is_empty() || !self.is_rapid && self.is_in_cutter(zone) {
             return Visit::Free;
         }
         let corners = samples.corners();
-        let middle = part.middle(&self.turned);
+        let middle = zone.middle(&self.turned);
         let normal = middle.map_or_else(Vector3::z, |(_, _, normal)| normal);
         let centre = samples.middle();
         let [low, high] = &scene.bounds;
@@ -163,7 +163,7 @@ impl Search<'_> {
             return Visit::Free;
         }
         let mut is_whole = true;
-        if part.angles.is_some() {
+        if zone.angles.is_some() {
             let count = corners.len();
             let near = scene.history.before.near(corners, need);
             is_whole = near.len() == count;
@@ -175,13 +175,13 @@ impl Search<'_> {
         if !held.contains(&false) {
             return Visit::Free;
         }
-        if let Some(witness) = self.touches(part) {
+        if let Some(witness) = self.touches(zone) {
             return Visit::Touching(witness);
         }
         let mixed = if is_whole { samples.mixed(&held) } else { [false; 3] };
         let distance = scene.room.distance.abs();
         let wanted = (FINEST * distance, bend > BEND * distance);
-        let smaller = part.divided(self.solid, &self.turned, mixed, wanted);
+        let smaller = zone.divided(self.solid, &self.turned, mixed, wanted);
         if smaller.is_empty() {
             return Visit::Open;
         }
@@ -189,19 +189,19 @@ impl Search<'_> {
         Visit::Divided(smaller, inside.min(nearest) + samples.extent(&centre))
     }
 
-    /// Whether a part is in the cutter that it belongs to, which cuts at that time.
-    fn is_in_cutter(&self, part: &Part) -> bool {
+    /// Whether a zone is in the cutter that it belongs to, which cuts at that time.
+    fn is_in_cutter(&self, zone: &Zone) -> bool {
         let solids = self.scene.history.courses[self.path].solids.iter();
-        let profile = part.profile(self.solid);
+        let profile = zone.profile(self.solid);
         solids.filter(|solid| solid.convex.is_exact()).any(|solid| {
             let is_inside = |(place, thick): &([f64; 2], f64)| solid.level.at(*place) + thick <= -self.scene.margin;
             profile.iter().all(is_inside)
         })
     }
 
-    /// A place in the middle of a part that is too near to material.
-    fn touches(&self, part: &Part) -> Option<Witness> {
-        let (time, point, normal) = part.middle(&self.turned).filter(|_| self.solid.is_exact())?;
+    /// A place in the middle of a zone that is too near to material.
+    fn touches(&self, zone: &Zone) -> Option<Witness> {
+        let (time, point, normal) = zone.middle(&self.turned).filter(|_| self.solid.is_exact())?;
         let scene = self.scene;
         let is_material =
             |point: &Vector3<f64>, around: f64| scene.history.is_material(point, self.moment(time), around);
@@ -240,14 +240,14 @@ impl Search<'_> {
         })
     }
 
-    fn leave(&self, part: &Part, found: &mut Found) {
+    fn leave(&self, zone: &Zone, found: &mut Found) {
         let stretch = self.turned.stretch;
         *found.open_counts.entry(stretch.number).or_default() += 1;
         if found.open.len() >= MOST_OPEN {
             return;
         }
-        let (low, high) = part.samples(self.solid, &self.turned).bounds();
-        let [first, last] = part.times.map(|time| (stretch.number, stretch.time(time)));
+        let (low, high) = zone.samples(self.solid, &self.turned).bounds();
+        let [first, last] = zone.times.map(|time| (stretch.number, stretch.time(time)));
         found.open.push(OpenBox {
             first,
             last,

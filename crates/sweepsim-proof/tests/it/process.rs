@@ -11,7 +11,7 @@ use sweepsim_proof::{Convex, Cutter, Movers, Room, Touched, Work, cover, touched
 const ROOM: Room = Room {
     distance: -1e-3,
     deviation: 1e-6,
-    parts: 200_000,
+    zones: 200_000,
 };
 
 fn block() -> Stock {
@@ -71,7 +71,7 @@ impl Scene {
         assert_eq!(
             found.open_count, 0,
             "{movers:?} {room:?}: open after {}: {open:?}",
-            found.parts
+            found.zones
         );
         found.moves.iter().map(|(_, witness)| witness.number).collect()
     }
@@ -314,7 +314,7 @@ fn random_scenes(cases: u32, least: u32) {
         let (sampled, enters) = sampled(&scene, kind, wide);
         let mut now = counts.get();
         for (movers, sampled) in [Movers::Bodies, Movers::Rapids].into_iter().zip(sampled) {
-            let room = Room { parts: 40_000, ..ROOM };
+            let room = Room { zones: 40_000, ..ROOM };
             let found = scene.touched_in(&small_block(), movers, &room);
             let known: Vec<usize> = found.moves.iter().map(|(_, witness)| witness.number).collect();
             for number in &sampled {

@@ -21,9 +21,9 @@ const CONTACT: f64 = 1e-3;
 /// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
 const PAIRS: usize = 500_000;
 const PAIRS_OF_MOVE: usize = 400;
-/// The most parts that are looked at in a statement about the stock: so many, and so many for each move.
-const PARTS: usize = 200_000;
-const PARTS_OF_MOVE: usize = 100;
+/// The most zones that are looked at in a statement about the stock: so many, and so many for each move.
+const ZONES: usize = 200_000;
+const ZONES_OF_MOVE: usize = 100;
 /// There, paths are followed within this part of the room.
 const DEVIATION: f64 = 0.5e-3;
 
@@ -245,7 +245,7 @@ impl<'a> AskedAll<'a> {
         Room {
             distance,
             deviation: DEVIATION * distance.abs(),
-            parts: PARTS + PARTS_OF_MOVE * self.job.moves(),
+            zones: ZONES + ZONES_OF_MOVE * self.job.moves(),
         }
     }
 

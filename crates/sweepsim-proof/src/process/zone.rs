@@ -1,4 +1,4 @@
-//! Parts of the surface of a moving solid of revolution, and times.
+//! Zones: parts of the surface of a moving solid of revolution, and times.
 
 use super::ring::Ring;
 use super::samples::{Samples, Turned};
@@ -25,7 +25,7 @@ pub(super) enum Outline {
 
 /// What of a solid is looked at, and when.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct Zone {
     pub outline: Outline,
     /// Around the axis, from [an arbitrary direction](Turned); all around if none.
     pub angles: Option<[f64; 2]>,
@@ -36,12 +36,12 @@ pub(super) struct Part {
     pub top: f64,
 }
 
-/// A part of which one end is held and the other is not is divided between them, unless it is so much longer otherwise.
+/// A zone of which one end is held and the other is not is divided between them, unless it is so much longer otherwise.
 const MIXED: f64 = 16.0;
 /// Wider sectors are taken as the whole ring.
 const WIDEST: f64 = 2.0;
 
-impl Part {
+impl Zone {
     /// All of a solid between two times.
     pub fn whole(times: [f64; 2], is_filled: bool) -> Self {
         Self {
@@ -78,7 +78,7 @@ impl Part {
         }
     }
 
-    /// Rings whose hull holds the part at its first and last time; and so at all times between them, but for the
+    /// Rings whose hull holds the zone at its first and last time; and so at all times between them, but for the
     /// [bend](Stretch::bend).
     pub fn samples(&self, solid: &Convex, turned: &Turned) -> Samples {
         let mut samples = Samples::default();
@@ -150,7 +150,7 @@ impl Part {
         Some((time, point, beyond - point))
     }
 
-    /// Smaller parts of it, or nothing if it is smaller than `least`.
+    /// Smaller zones of it, or nothing if it is smaller than `least`.
     ///
     /// `mixed`: whether of its [samples](Samples::mixed) some are held and others are not, along each dimension: it is
     /// divided there first. `bends`: whether it must be shorter.
@@ -246,22 +246,22 @@ impl Part {
             Outline::Arc(arc) => {
                 let [from, to] = arc.angles;
                 let middle = 0.5 * (from + to);
-                let part = |angles| self.with(Outline::Arc(Arc { angles, ..*arc }));
-                vec![part([from, middle]), part([middle, to])]
+                let zone = |angles| self.with(Outline::Arc(Arc { angles, ..*arc }));
+                vec![zone([from, middle]), zone([middle, to])]
             }
         }
     }
 
     fn sectors(&self) -> Vec<Self> {
-        let part = |angles| Self {
+        let zone = |angles| Self {
             angles: Some(angles),
             ..self.clone()
         };
         match self.angles {
             None => (0..4)
-                .map(|k| part([k, k + 1].map(|k| FRAC_PI_2 * f64::from(k))))
+                .map(|k| zone([k, k + 1].map(|k| FRAC_PI_2 * f64::from(k))))
                 .collect(),
-            Some([a, b]) => vec![part([a, 0.5 * (a + b)]), part([0.5 * (a + b), b])],
+            Some([a, b]) => vec![zone([a, 0.5 * (a + b)]), zone([0.5 * (a + b), b])],
         }
     }
 
