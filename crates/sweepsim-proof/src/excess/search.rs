@@ -191,10 +191,14 @@ impl Scene<'_> {
             if let Some((place, height)) = found.highest.filter(|(_, height)| *height > known) {
                 left.highest = Some((place.into(), height));
             }
-            (left.open, left.open_count) = (found.open, found.open_count);
             if is_done {
                 left.bound = distance;
                 break;
+            }
+            // Where it is not known whether the limit is kept, if nothing is known better at a larger distance.
+            (left.open, left.open_count) = (found.open, found.open_count);
+            if let (true, Some((place, _))) = (left.open.is_empty(), left.highest) {
+                (left.open, left.open_count) = (vec![[place; 2]], 1);
             }
             if spent == 0 {
                 break;
@@ -210,8 +214,7 @@ impl Scene<'_> {
                 false => 2.0 * distance,
             };
         }
-        // What stands higher than the limit leaves it open no more whether it is kept.
-        if left.highest.is_some_and(|(_, height)| height > limits.depth) {
+        if left.bound <= limits.depth || left.highest.is_some_and(|(_, height)| height > limits.depth) {
             (left.open, left.open_count) = (Vec::new(), 0);
         }
         Some(left)

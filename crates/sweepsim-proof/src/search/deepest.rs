@@ -32,6 +32,18 @@ pub(super) struct Wanted {
 /// Where cutters go deep, the enclosure may be as wide as this part of the depth.
 pub(super) const SHARE: f64 = 1.0 / 64.0;
 
+/// Whether a limit is kept need not be known where the deepest place is nearer to it than this part of the width.
+const LEAST: f64 = 0.1;
+
+/// If some point is known to be so deep, what is no deeper than this is done. Whether the limit is kept is to be known.
+pub(super) fn enough(known: f64, width: f64, limit: f64) -> f64 {
+    let enough = known + width.max(known * SHARE);
+    if known > limit {
+        return enough;
+    }
+    enough.min(limit.max(known + LEAST * width))
+}
+
 /// Runs of more stretches along which the axis turns are divided before they are looked at.
 const MOST_TURNING: usize = 4;
 /// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
@@ -116,8 +128,7 @@ impl<'a> Search<'a> {
 
     /// A pair whose bound is no more than this is done.
     fn enough(&self) -> f64 {
-        let known = self.known();
-        known + self.wanted.width.max(known * SHARE) - self.wanted.allowance
+        enough(self.known(), self.wanted.width, self.wanted.limit) - self.wanted.allowance
     }
 
     fn visit(&mut self, pair: &Pair<'a>) {

@@ -1,6 +1,6 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
-use super::deepest::{SHARE, Search, Wanted};
+use super::deepest::{Search, Wanted, enough};
 use super::found::Found;
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, Target};
@@ -208,7 +208,7 @@ pub fn deepest(
     }
     // What is left open elsewhere, but no deeper than what is known, is settled.
     let known = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth);
-    let settled = known + limits.width.max(known * SHARE);
+    let settled = enough(known, limits.width, limits.depth);
     all.open.retain(|(_, open)| open.depth > settled);
     all.open_count = depths.iter().filter(|depth| **depth > settled).count();
     all.bound = all.bound.max(known);

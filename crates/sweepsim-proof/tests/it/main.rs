@@ -2,6 +2,7 @@
 
 mod apart;
 mod certificates;
+mod forged;
 mod process;
 mod scenes;
 mod standing;

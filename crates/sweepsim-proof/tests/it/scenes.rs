@@ -318,7 +318,7 @@ fn two_thousand_random_scenes_are_enclosed() {
     run(2000, (16, 4));
 }
 
-/// Nothing touches, and the path is followed within a deviation: a depth of 0 is shown with that room, and is no distance.
+/// Nothing touches, and the path is followed within a deviation: a depth of 0 is shown with that room.
 #[test]
 fn a_lollipop_beside_a_sphere_is_certified() {
     let scene = SceneOf {
@@ -334,4 +334,21 @@ fn a_lollipop_beside_a_sphere_is_certified() {
     };
     let [cuts, _] = check(&scene, (16, 4)).expect("it is certified");
     assert!(!cuts);
+}
+
+/// A depth just below the limit: whether it is kept is known, or a place says where it is not.
+#[test]
+fn a_depth_near_the_limit_is_decided_or_open() {
+    let scene = SceneOf {
+        target: 2,
+        size: 0.946_072_074_997_177_2,
+        tool: 4,
+        motion: 3,
+        tips: [
+            [0.0, -0.713_916_485_766_957, 1.878_450_654_530_17],
+            [-3.781_366_283_570_563, -1.274_278_229_869_86, 1.112_263_976_123_662_3],
+        ],
+        axes: [[0.0, 0.0, 1.0]; 2],
+    };
+    check(&scene, (16, 4)).expect("it holds");
 }

@@ -227,3 +227,45 @@ fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
         found.open_count
     );
 }
+
+/// What stands just below the limit, so that it may be above: a place says so.
+#[test]
+fn what_is_undecided_has_a_place() {
+    let tool = Tool::ball(3.0, 20.0).expect("a tool");
+    // Scallops of a hundredth less than the limit, between rows 2 mm apart.
+    let height = 3.0 - (9.0_f64 - 1.0).sqrt();
+    let mut tips = Vec::new();
+    for row in -8..=8 {
+        let side = if row % 2 == 0 { -40.0 } else { 40.0 };
+        let y = f64::from(2 * row);
+        tips.extend([[side, y, 0.0], [-side, y, 0.0]]);
+    }
+    let target = TriangleSoup::block([-20.0, -12.0, -8.0], [20.0, 12.0, 0.0]);
+    let poses = tips.iter().map(|tip| Pose::new(*tip, [0.0, 0.0, 1.0]).expect("a pose"));
+    let path = Path::new(poses.collect()).expect("a path");
+    let stock = Stock::Block {
+        min: [-20.0, -12.0, -8.0],
+        max: [20.0, 12.0, 1.0],
+    };
+    let (solids, solid) = (cover(&tool, 1e-4), Target::new(&target).expect("closed"));
+    let cutter = Cutter::new(&solids, &path, None);
+    let (mut decided, mut open) = (0, 0);
+    for share in [0.5, 0.9, 0.99, 0.999, 1.0, 1.001, 1.01, 1.1, 2.0] {
+        let limits = Limits::new(share * height, 0.1 * share * height, 20_000);
+        let left = highest(&solid, &stock, &[cutter], &limits, false, &());
+        let left = left.expect("a stock").expect("not cancelled");
+        let known = left.highest.map_or(0.0, |(_, height)| height);
+        assert!(
+            known <= height + 1e-9 && height <= left.bound + 1e-9,
+            "{share}: {left:?}"
+        );
+        if known > limits.depth || left.bound <= limits.depth {
+            assert_eq!((left.open.len(), left.open_count), (0, 0), "{share}");
+            decided += 1;
+        } else {
+            assert!(!left.open.is_empty() && left.open_count > 0, "{share}: {left:?}");
+            open += 1;
+        }
+    }
+    assert!(decided >= 4 && open > 0, "{decided} {open}");
+}
