@@ -159,7 +159,7 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
 
 /// Compares dexels with a closed mesh directly: each end with the nearest point of the mesh, however far it is.
 ///
-/// What of the target is missing altogether has no ends near it: see [`DistanceTo::most_missing`].
+/// What of the target is missing altogether has no ends near it: see [`DistanceTo::furthest`].
 ///
 /// # Errors
 /// [`StockError`](crate::StockError): the mesh is not closed, or intersects itself.
@@ -204,45 +204,6 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup) -> Result<Compa
         })
         .collect();
     Ok(Comparison::sum(parts))
-}
-
-/// Compares dexels along three axes with a closed mesh directly, walls parallel to one of them included: each end with
-/// the nearest point of the mesh, however far it is.
-///
-/// An end stands for the area of its cell times the cosine of its slope: the squares of the three cosines of a face add
-/// up to one, so that areas, means and histograms count no face twice. Volumes are the means of the three sets'.
-/// Deviations come by set, then by line.
-///
-/// # Errors
-/// [`StockError`](crate::StockError): the mesh is not closed, or intersects itself.
-///
-/// ```
-/// use sweepsim_dexel::{Stock, TriDexels, compare_tri_with_mesh};
-/// let block = |side: f64| Stock::Block { min: [-4.0; 3], max: [side, 4.0, 4.0] };
-/// let solid = |side: f64| TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &block(side));
-/// let mesh = solid(4.0)?.surface()?.soup().ok_or("no mesh")?;
-/// // A wall that no dexel along z can measure.
-/// let found = compare_tri_with_mesh(&solid(4.125)?, &mesh)?;
-/// assert!(found.range().is_some_and(|[_, most]| (most - 0.125).abs() < 1e-6));
-/// assert!((found.area() - (2.0 * 64.0 + 4.0 * 8.0 * 8.125)).abs() < 10.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn compare_tri_with_mesh(dexels: &TriDexels, target: &TriangleSoup) -> Result<Comparison, StockError> {
-    let mut all = Vec::with_capacity(3);
-    for set in dexels.sets() {
-        let mut part = compare_with_mesh(set, target)?;
-        let [dx, dy] = set.grid().spacing();
-        for deviation in &mut part.deviations {
-            let line = set.at(deviation.line as usize);
-            let end = line.iter().flat_map(|i| [i.lower, i.upper]).nth(deviation.end as usize);
-            deviation.area = end.map_or(0.0, |end| dx * dy * f64::from(end.normal[2].abs()));
-        }
-        for volume in [&mut part.volume, &mut part.target, &mut part.excess, &mut part.missing] {
-            *volume /= 3.0;
-        }
-        all.push(part);
-    }
-    Ok(Comparison::sum(all))
 }
 
 /// The surface area that an end represents.

@@ -32,7 +32,7 @@ mod surface;
 mod tri;
 mod vector;
 
-pub use compare::{Comparison, Deviation, compare, compare_tri_with_mesh, compare_with_mesh};
+pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
 pub use deviation::{DeviationAt, DistanceRange, Surface, SurfaceDeviations};
 pub use dexels::{
     Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, TilesError, pack_normal, unpack_normal,

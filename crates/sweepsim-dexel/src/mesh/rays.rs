@@ -36,9 +36,36 @@ impl TreeNode {
 }
 
 impl DistanceTo {
+    /// How thick the solid is at a point of its surface: along its normal there, or along one of the axes just below
+    /// the surface; infinite if that is more than `most`.
+    pub(crate) fn thickness(&self, p: [f64; 3], normal: [f64; 3], size: f64, most: f64) -> f64 {
+        // Hits nearer than rounding are the triangle itself and its neighbours.
+        let least = 1e-9 * size;
+        let within = |from, direction, reach| {
+            let found = self.first_hit(from, direction, least..reach);
+            found.unwrap_or(f64::INFINITY)
+        };
+        let below = along(p, -1e-6 * size, normal);
+        let chords = (0..3).map(|k| {
+            let mut axis = [0.0; 3];
+            axis[k] = 1.0;
+            // On an edge of the solid, one of both leaves it at once.
+            let back = axis.map(|c| -c);
+            let mut both = [within(below, axis, most), within(below, back, most)];
+            // Of a chord that is short to one side all is looked for.
+            match both.map(f64::is_finite) {
+                [true, false] => both[1] = within(below, back, f64::INFINITY),
+                [false, true] => both[0] = within(below, axis, f64::INFINITY),
+                [true, true] | [false, false] => (),
+            }
+            let sum: f64 = both.iter().filter(|away| away.is_finite()).sum();
+            if sum > 0.0 { sum } else { f64::INFINITY }
+        });
+        chords.fold(within(p, normal.map(|c| -c), most), f64::min)
+    }
+
     /// The distance from `p` along the unit vector `direction` to the first triangle, if it is in a range.
-    #[must_use]
-    pub(super) fn first_hit(&self, p: [f64; 3], direction: [f64; 3], range: Range<f64>) -> Option<f64> {
+    fn first_hit(&self, p: [f64; 3], direction: [f64; 3], range: Range<f64>) -> Option<f64> {
         let Range {
             start: least,
             end: reach,
