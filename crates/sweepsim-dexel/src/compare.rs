@@ -12,7 +12,6 @@ use crate::intervals::End;
 use crate::mesh::DistanceTo;
 use crate::mesh::TriangleSoup;
 use crate::stock::{StockError, mesh_dexels};
-use crate::tri::TriDexels;
 use rayon::prelude::*;
 
 /// How one end differs from the target.

@@ -34,6 +34,18 @@ fn farthest(points: &[[f64; 3]], u: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl Convex {
+    /// What is turned about an axis of any length, as cones one above the other between circles of radius and height.
+    #[must_use]
+    pub fn cones(base: [f64; 3], axis: Vector3<f64>, outline: &[[f64; 2]]) -> Vec<Self> {
+        let axis = Unit::new_normalize(axis);
+        let cone = |pair: &[[f64; 2]]| Self::Turned {
+            base,
+            axis,
+            circles: pair.to_vec(),
+        };
+        outline.windows(2).map(cone).collect()
+    }
+
     /// The point that is farthest along `u`.
     pub(crate) fn support(&self, u: &Vector3<f64>) -> Vector3<f64> {
         match self {

@@ -40,10 +40,10 @@ pub mod tools;
 pub mod write;
 
 pub use controls::{heidenhain, siemens};
-pub use drive::{AxisFault, AxisFinding, RapidPoint, check};
+pub use drive::{AxesCourse, AxisFault, AxisFinding, RapidPoint, check};
 pub use machines::{
-    Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
-    Solutions, WorkFrame,
+    BodyDescription, BodyShape, Carries, Chain, Kinematics, LinearAxis, Machine, MachineDescription, MachineError,
+    Position, Rapid, ReachError, RotaryAxis, Solutions, WorkFrame,
 };
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;

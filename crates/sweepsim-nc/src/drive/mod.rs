@@ -1,5 +1,6 @@
 //! Running programs on machines: from the coordinates of blocks to poses, and checks of axes.
 
+mod axes;
 mod check;
 mod circular_arc;
 mod contour;
@@ -13,6 +14,7 @@ mod trace;
 mod track;
 mod unknowns;
 
+pub use axes::AxesCourse;
 pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 

@@ -44,6 +44,12 @@ impl Kinematics {
         points
     }
 
+    /// The corners of a dog-leg with their times, whatever the machine says of its rapids.
+    pub(crate) fn dog_leg(&self, from: &Position, to: &Position) -> Vec<(f64, Position)> {
+        let corners = self.corners(from, to);
+        corners.into_iter().map(|point| (point.time, point.position)).collect()
+    }
+
     /// The corners of a dog-leg.
     fn corners(&self, from: &Position, to: &Position) -> Vec<RapidPoint> {
         let speeds = self.linear().clone().map(|axis| axis.speed);

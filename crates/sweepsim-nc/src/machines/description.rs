@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::bodies::{BodyDescription, Carries};
+
 /// A machine, as written in `machine.ron`: lengths in millimetres, angles in degrees, from the part to the tool.
 ///
 /// Positive coordinates and angles move the tool relative to the part, whichever of them the axis carries: a table's `C` about `(0, 0, 1)` turns
@@ -41,6 +43,15 @@ pub struct MachineDescription {
     /// Whether programs are under tip control from the start.
     #[serde(default)]
     pub tip_control: bool,
+    /// Its bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyDescription>,
+    /// How near its bodies may come to each other, in mm.
+    #[serde(default)]
+    pub clearance: f64,
+    /// Pairs of bodies, by their names, that are not looked at, besides those of one link or of neighbouring ones.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub may_touch: Vec<(String, String)>,
 }
 
 /// A linear axis.
@@ -52,6 +63,9 @@ pub struct LinearAxis {
     /// The direction in which positive coordinates move the tool relative to the part; without it that of the letter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
+    /// Whether it moves the tool or the part.
+    #[serde(default)]
+    pub carries: Carries,
     /// The least and the largest coordinate of the spindle's nose, in machine coordinates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<[f64; 2]>,
@@ -98,6 +112,7 @@ impl LinearAxis {
         Self {
             letter,
             direction: None,
+            carries: Carries::Tool,
             limits: None,
             speed: None,
             acceleration: None,

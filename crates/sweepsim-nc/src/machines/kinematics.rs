@@ -210,6 +210,7 @@ impl Kinematics {
                 return Err(MachineError::Idle(letter(second)));
             }
         }
+        description.check_bodies()?;
         let rotaries = Rotaries::new(joints.iter().map(|joint| (joint.letter, joint.axis)));
         Ok(Self {
             description,
@@ -273,7 +274,7 @@ impl Kinematics {
     }
 
     /// What machine coordinates of the spindle's nose are more than a program's.
-    pub(super) fn to_machine(&self, tool_length: f64) -> Vector3<f64> {
+    pub(crate) fn to_machine(&self, tool_length: f64) -> Vector3<f64> {
         self.inverse_directions * (Vector3::from(self.description.part_zero) + Vector3::z() * tool_length)
     }
 
@@ -294,6 +295,11 @@ impl Kinematics {
     /// From X, Y, Z to directions in space, and back.
     pub(crate) fn directions(&self) -> [&Matrix3<f64>; 2] {
         [&self.directions, &self.inverse_directions]
+    }
+
+    /// The rotary axes of table and head.
+    pub(super) fn joints(&self) -> [&[Joint]; 2] {
+        [&self.table, &self.head]
     }
 
     pub(crate) fn rotaries(&self) -> &Rotaries {

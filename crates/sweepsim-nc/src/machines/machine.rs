@@ -103,13 +103,7 @@ impl Machine {
     /// # Ok::<(), sweepsim_nc::MachineError>(())
     /// ```
     pub fn read(text: &str) -> Result<Self, MachineError> {
-        let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-        let description = options.from_str(text).map_err(|error| MachineError::Syntax {
-            line: error.span.start.line,
-            column: error.span.start.col,
-            message: error.code.to_string(),
-        })?;
-        Self::new(description)
+        Self::new(description(text)?)
     }
 
     /// Reads a machine from a file, or takes the ready one of this name.
@@ -128,7 +122,9 @@ impl Machine {
                 _ => error.to_string(),
             })
         })?;
-        Self::read(&text)
+        let mut found = description(&text)?;
+        found.beside(file);
+        Self::new(found)
     }
 
     /// The text of `machine.ron`, if all axes are known.
@@ -140,4 +136,14 @@ impl Machine {
             .to_string_pretty(self.kinematics.as_ref()?.description(), pretty)
             .ok()
     }
+}
+
+/// What text in RON says of a machine.
+fn description(text: &str) -> Result<MachineDescription, MachineError> {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| MachineError::Syntax {
+        line: error.span.start.line,
+        column: error.span.start.col,
+        message: error.code.to_string(),
+    })
 }

@@ -6,6 +6,8 @@
 //! The tool's direction for angles `θ₁, θ₂` of the rotary axes, from the part to the tool, is `R(k₁, θ₁) R(k₂, θ₂) z`. Any directions of the
 //! axes are allowed (a nutating head has `k₂` at 45°), so there is one formula for all: the spherical triangle of `k₁`, `k₂` and the tool.
 
+mod bodies;
+mod chain;
 mod description;
 mod error;
 mod frame;
@@ -15,6 +17,8 @@ mod machine;
 mod ready;
 mod rotaries;
 
+pub use bodies::{BodyDescription, BodyShape, Carries};
+pub use chain::Chain;
 pub use description::{LinearAxis, MachineDescription, Position, Rapid, RotaryAxis};
 pub use error::{MachineError, ReachError};
 pub use frame::WorkFrame;

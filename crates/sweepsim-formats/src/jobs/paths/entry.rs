@@ -110,6 +110,7 @@ impl JobReader<'_> {
                 no_feed: Flags::default(),
                 beyond: Vec::new(),
                 has_limits: false,
+                on_machine: None,
                 dwell_seconds: 0.0,
                 path,
                 source,

@@ -4,11 +4,13 @@ mod columns;
 mod course;
 mod entry;
 mod inline;
+mod machine;
 mod program;
 mod section;
 mod spline_motion;
 
 pub use columns::{Flags, Origins, Seconds};
+pub use machine::OnMachine;
 
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
@@ -57,6 +59,8 @@ pub struct JobPath {
     pub beyond: Vec<AxisFinding>,
     /// Whether a machine is known that has limits.
     pub has_limits: bool,
+    /// The machine, if one is known that has bodies or limits.
+    pub on_machine: Option<OnMachine>,
     /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
     pub seconds: Seconds,
     /// How long the tool rests between these moves, in seconds.

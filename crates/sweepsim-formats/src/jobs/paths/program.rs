@@ -7,7 +7,7 @@ use sweepsim_motion::{Law, PackedRows};
 use sweepsim_nc::{Call, Event, EventKind, Kinematics, MoveTime, Note, Program, ProgramPose, Spindle, check};
 
 use super::section::{Known, Section, Whole, with_notes};
-use super::{Flags, JobPath};
+use super::{Flags, JobPath, machine};
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::jobs::provided::Provided;
 use crate::jobs::tools::ToolBox;
@@ -49,8 +49,10 @@ pub(crate) fn of_program(
     let files: Arc<[PathBuf]> = std::mem::take(&mut program.files).into();
     let calls: Arc<[Call]> = std::mem::take(&mut program.calls).into();
     let has_spindle = turns_spindle(&program);
-    let machine = program.machine.kinematics.clone();
-    let kinematics = machine.as_deref();
+    let on = program.machine.kinematics.clone();
+    let kinematics = on.as_deref();
+    let bodies = kinematics.map_or_else(|| Ok(Arc::from([])), machine::bodies)?;
+    let follows = !bodies.is_empty() || kinematics.is_some_and(has_limits);
     let beyond = kinematics.map_or_else(Vec::new, |kinematics| check(&program, kinematics));
     let mut times = kinematics.map(|_| times(&program));
     // Poses and positions make room for the paths as these grow.
@@ -89,7 +91,7 @@ pub(crate) fn of_program(
                 position: positions.as_mut().and_then(Iterator::next),
                 at_fault: std::iter::from_fn(|| faults.next_if(|pose| *pose <= of)).count() > 0,
             };
-            section.add(kinematics, &pose, &known);
+            section.add(on.as_ref(), follows, &pose, &known);
             if !poses.peek().is_some_and(|(_, next)| next.joined) {
                 break;
             }
@@ -99,6 +101,7 @@ pub(crate) fn of_program(
             shown,
             beyond: &beyond,
             has_limits: kinematics.is_some_and(has_limits),
+            bodies: bodies.clone(),
             has_spindle,
             files: files.clone(),
             calls: calls.clone(),

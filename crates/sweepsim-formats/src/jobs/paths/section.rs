@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::course::{Step, TURNING, at_steps};
-use super::{Flags, JobPath, Origin, Origins, Seconds};
+use super::{Flags, JobPath, OnMachine, Origin, Origins, Seconds};
 use sweepsim_dexel::Frame;
+use sweepsim_machine::Body;
 use sweepsim_motion::{Law, Move, OtherCourses, PathBuilder, PathError, Pose};
-use sweepsim_nc::{AxisFinding, Call, Kinematics, MoveTime, Note, Position, ProgramPose, Rapid};
+use sweepsim_nc::{AxesCourse, AxisFinding, Call, Kinematics, MoveTime, Note, Position, ProgramPose, Rapid};
 
 /// A section of a program: poses that the tool reaches one after the other, and the corners of dog-legs between them.
 #[derive(Default)]
@@ -24,6 +25,8 @@ pub(super) struct Section {
     /// The poses at which the machine finds fault.
     steps: Vec<Step>,
     last: Option<(Pose, Option<Position>)>,
+    /// What the axes of the machine do, if its bodies or limits are looked at.
+    axes: Option<AxesCourse>,
 }
 
 /// What is known of the move to a pose of a program.
@@ -41,9 +44,18 @@ pub(super) struct Known {
 
 impl Section {
     /// Adds a pose of a program for a machine, if that is known.
-    pub fn add(&mut self, machine: Option<&Kinematics>, pose: &ProgramPose, known: &Known) {
+    pub fn add(&mut self, machine: Option<&Arc<Kinematics>>, follows: bool, pose: &ProgramPose, known: &Known) {
         self.dwell_seconds += known.time.rest;
         let last = self.last.replace((pose.pose, known.position));
+        if let (true, Some(machine), Some(at)) = (follows, machine, &known.position) {
+            match (&mut self.axes, &last) {
+                (Some(axes), Some((start, Some(from)))) => {
+                    axes.push((start, from), (pose, at), self.origins.len().saturating_sub(1));
+                }
+                _ => self.axes = Some(AxesCourse::new(machine.clone(), pose, at)),
+            }
+        }
+        let machine = machine.map(Arc::as_ref);
         let course_on = |machine: &Kinematics| {
             let (start, from) = last?;
             pose.dog_leg_from(&start, [&from?, &known.position?], machine, TURNING)
@@ -119,6 +131,10 @@ impl Section {
             assumed_rapids: self.assumed_rapids,
             beyond: at_steps(whole.beyond, &self.steps),
             has_limits: whole.has_limits,
+            on_machine: self.axes.map(|course| OnMachine {
+                course,
+                bodies: whole.bodies.clone(),
+            }),
             spindle_stopped: if whole.has_spindle {
                 self.stopped
             } else {
@@ -140,6 +156,8 @@ pub(super) struct Whole<'a> {
     pub beyond: &'a [AxisFinding],
     /// Whether the machine is known and has limits.
     pub has_limits: bool,
+    /// The bodies of the machine.
+    pub bodies: Arc<[Body]>,
     /// Whether the program ever turns the spindle.
     pub has_spindle: bool,
     pub files: Arc<[PathBuf]>,

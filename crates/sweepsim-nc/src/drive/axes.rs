@@ -1,0 +1,224 @@
+//! What the axes of a machine do on a path, at every time of each move.
+
+use std::sync::Arc;
+
+use nalgebra::{Rotation3, Unit, Vector3};
+use sweepsim_machine::{Course, JOINTS, Values};
+use sweepsim_motion::{Pose, TipArc, TipCourse};
+
+use crate::machines::{Chain, Kinematics, Position, Rapid};
+use crate::model::pose::ProgramPose;
+
+/// The course of the joints of a machine along a path: of each move, and where a rapid may be made in two ways, of both.
+#[derive(Clone, Debug)]
+pub struct AxesCourse {
+    machine: Arc<Kinematics>,
+    chain: Chain,
+    pieces: Vec<Piece>,
+}
+
+/// A part of a move in which the joints go straight, or the tip goes its own way.
+#[derive(Clone, Debug)]
+struct Piece {
+    from: Values,
+    to: Values,
+    /// The move, and whether it is the dog-leg that the move may be.
+    number: u32,
+    other: bool,
+    joined: bool,
+    /// Times of the move that it begins and ends at.
+    share: [f64; 2],
+    bent: Option<Box<Bent>>,
+}
+
+/// The tip on its way while the rotary axes turn evenly.
+#[derive(Clone, Debug)]
+struct Bent {
+    tips: [[f64; 3]; 2],
+    arc: Option<TipArc>,
+    from: Position,
+    to: Position,
+    tool_length: f64,
+    /// No second derivative of X, Y, Z is larger.
+    bound: [f64; 3],
+}
+
+impl AxesCourse {
+    /// The course on a path that begins at a position.
+    #[must_use]
+    pub fn new(machine: Arc<Kinematics>, start: &ProgramPose, at: &Position) -> Self {
+        let chain = machine.chain();
+        let values = chain.values(&machine, at, machine.tool_length(start.tool));
+        let still = Piece {
+            from: values,
+            to: values,
+            number: 0,
+            other: false,
+            joined: false,
+            share: [0.0; 2],
+            bent: None,
+        };
+        Self {
+            machine,
+            chain,
+            pieces: vec![still],
+        }
+    }
+
+    /// The chain of its joints.
+    #[must_use]
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// The machine.
+    #[must_use]
+    pub fn machine(&self) -> &Kinematics {
+        &self.machine
+    }
+
+    /// Adds the move from one pose and position to another one, which is the move `number` of the path.
+    pub fn push(&mut self, (start, from): (&Pose, &Position), (end, to): (&ProgramPose, &Position), number: usize) {
+        let length = self.machine.tool_length(end.tool);
+        let values = |at: &Position| self.chain.values(&self.machine, at, length);
+        let turns = from.abc != to.abc;
+        let arc = match end.way().course {
+            TipCourse::Arc(arc) => Some(arc),
+            TipCourse::Straight => None,
+        };
+        let even = !end.tip_control && arc.is_none();
+        let bent = (arc.is_some() || turns && !even).then(|| Bent::new(&self.machine, (start, from), (end, to), arc));
+        let piece = |from, to, other, joined, share, bent| Piece {
+            from,
+            to,
+            number: number as u32,
+            other,
+            joined,
+            share,
+            bent,
+        };
+        let corners = match end.rapid && bent.is_none() {
+            true => self.machine.dog_leg(from, to),
+            false => Vec::new(),
+        };
+        let kind = self.machine.rapid();
+        let mut added = Vec::new();
+        if corners.is_empty() || kind != Rapid::DogLeg {
+            added.push(piece(
+                values(from),
+                values(to),
+                false,
+                true,
+                [0.0, 1.0],
+                bent.map(Box::new),
+            ));
+        }
+        if !corners.is_empty() && kind != Rapid::Straight {
+            let is_other = kind == Rapid::Unknown;
+            let ends = std::iter::once((0.0, *from)).chain(corners).chain([(1.0, *to)]);
+            let ends: Vec<(f64, Position)> = ends.collect();
+            added.extend(ends.windows(2).enumerate().map(|(k, pair)| {
+                let [(t, a), (u, b)] = [pair[0], pair[1]];
+                let mut piece = piece(values(&a), values(&b), is_other, k > 0 || !is_other, [t, u], None);
+                if !is_other {
+                    // The path has its corners, too.
+                    (piece.number, piece.share) = ((number + k) as u32, [0.0, 1.0]);
+                }
+                piece
+            }));
+        }
+        self.pieces.extend(added);
+    }
+
+    /// The move of the path that a piece is of, the time in it, and whether it is so only if a rapid is a dog-leg.
+    #[must_use]
+    pub fn place(&self, piece: usize, time: f64) -> (usize, f64, bool) {
+        let piece = &self.pieces[piece];
+        let [from, to] = piece.share;
+        (piece.number as usize, from + time * (to - from), piece.other)
+    }
+}
+
+impl Bent {
+    fn new(
+        machine: &Kinematics,
+        (start, from): (&Pose, &Position),
+        (end, to): (&ProgramPose, &Position),
+        arc: Option<TipArc>,
+    ) -> Self {
+        let tool_length = machine.tool_length(end.tool);
+        let tips = [start.tip(), end.pose.tip()];
+        let mut bound = machine.bend(tips, from.abc, to.abc, tool_length);
+        if let Some(arc) = arc {
+            let normal = Vector3::from(arc.normal());
+            let out = Vector3::from(tips[0]) - Vector3::from(arc.centre());
+            let radius = normal.cross(&out).norm();
+            // What an arc adds to a straight tip: it is off by a diameter at most, faster by the arc, and bent itself.
+            let turn: f64 = (0..3).map(|k| (to.abc[k] - from.abc[k]).abs().to_radians()).sum();
+            let speed = radius * arc.angle().abs();
+            let more = speed * arc.angle().abs() + 2.0 * turn * speed + 2.0 * turn * turn * radius;
+            let [_, inverse] = machine.directions();
+            bound = std::array::from_fn(|k| bound[k] + more * inverse.row(k).norm());
+        }
+        Self {
+            tips,
+            arc,
+            from: *from,
+            to: *to,
+            tool_length,
+            bound,
+        }
+    }
+
+    fn at(&self, machine: &Kinematics, time: f64) -> Position {
+        let [a, b] = self.tips.map(Vector3::from);
+        let tip = match &self.arc {
+            None => a + (b - a) * time,
+            Some(arc) => {
+                let (centre, normal) = (
+                    Vector3::from(arc.centre()),
+                    Unit::new_normalize(Vector3::from(arc.normal())),
+                );
+                let turned =
+                    |time: f64| centre + Rotation3::from_axis_angle(&normal, time * arc.angle()) * (a - centre);
+                // What is missing at the end, a helix's rise above all, is spread over the move.
+                turned(time) + (b - turned(1.0)) * time
+            }
+        };
+        let abc = self.from.towards(&self.to, time).abc;
+        Position::new(machine.linear_at(tip.into(), abc, self.tool_length), abc)
+    }
+}
+
+impl Course for AxesCourse {
+    fn moves(&self) -> usize {
+        self.pieces.len()
+    }
+
+    fn at(&self, number: usize, time: f64) -> Values {
+        let piece = &self.pieces[number];
+        match &piece.bent {
+            None => std::array::from_fn(|k| piece.from[k] + time * (piece.to[k] - piece.from[k])),
+            Some(bent) => {
+                let at = bent.at(&self.machine, time);
+                self.chain.values(&self.machine, &at, bent.tool_length)
+            }
+        }
+    }
+
+    fn bend(&self, number: usize) -> Values {
+        let mut values = [0.0; JOINTS];
+        if let Some(bent) = &self.pieces[number].bent {
+            for (value, letter) in values.iter_mut().zip(self.chain.letters()) {
+                if let Some(k) = ['X', 'Y', 'Z'].iter().position(|own| own == letter) {
+                    *value = bent.bound[k];
+                }
+            }
+        }
+        values
+    }
+
+    fn joined(&self, number: usize) -> bool {
+        self.pieces[number].joined
+    }
+}
