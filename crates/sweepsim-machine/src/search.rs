@@ -9,6 +9,11 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
+/// The least distance is told within this share of it,
+const CLOSE: f64 = 0.9;
+/// if it is less than this, in millimetres.
+const TOLD: f64 = 20.0;
+
 /// How near two bodies may come, and how much is tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
@@ -38,7 +43,8 @@ impl Limits {
 /// What is known of a pair of bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// They are farther apart than the clearance at every time: at least as far as this.
+    /// They are farther apart than the clearance at every time: at least as far as this, which is nine tenths of their
+    /// least distance or 20 mm, but for the tolerance.
     Apart(f64),
     /// They come too near.
     Contact(Contact),
@@ -104,6 +110,24 @@ struct Search<'a> {
 /// Parts of both bodies.
 type Nodes = (u32, u32);
 
+/// What is known so far.
+struct Known {
+    /// As many distances may be computed.
+    tests: usize,
+    /// At all times that are done with, both are at least so far apart.
+    least: f64,
+    /// Two of their points were so near to each other.
+    nearest: f64,
+}
+
+impl Known {
+    /// A time is done with if both are farther apart than this: than the clearance, and not much nearer than they were
+    /// seen to be, where that is near enough to be told.
+    fn wanted(&self, clearance: f64) -> f64 {
+        clearance.max((CLOSE * self.nearest).min(TOLD))
+    }
+}
+
 /// What was found in an interval.
 enum Found {
     /// These parts may come too near.
@@ -114,7 +138,11 @@ enum Found {
 
 impl Search<'_> {
     fn run(&self) -> Outcome {
-        let (mut tests, mut least) = (self.limits.tests, f64::INFINITY);
+        let mut known = Known {
+            tests: self.limits.tests,
+            least: f64::INFINITY,
+            nearest: f64::INFINITY,
+        };
         // Surfaces see nothing of what is within them: it came through them, or was there after a break.
         let swallowed = self.swallowed();
         let end = swallowed.as_ref().map_or(usize::MAX, |contact| contact.number);
@@ -127,11 +155,11 @@ impl Search<'_> {
             if !there(self.a) || !there(self.b) || moves.start >= end {
                 continue;
             }
-            if tests == 0 {
+            if known.tests == 0 {
                 let (number, time) = unknown.unwrap_or((moves.start, begin(&interval)));
                 return Outcome::Open(number, time);
             }
-            match self.look(&interval, nodes, &mut tests, &mut least) {
+            match self.look(&interval, nodes, &mut known) {
                 Found::Left(left) if left.is_empty() => {}
                 Found::Left(left) => {
                     let parts = self.runs.parts(&interval);
@@ -146,7 +174,7 @@ impl Search<'_> {
         match (swallowed, unknown) {
             (Some(contact), _) => Outcome::Contact(contact),
             (None, Some((number, time))) => Outcome::Open(number, time),
-            (None, None) => Outcome::Apart(least),
+            (None, None) => Outcome::Apart(known.least),
         }
     }
 
@@ -167,7 +195,7 @@ impl Search<'_> {
         self.linkage.travel(links, span, &node.centre, node.radius)
     }
 
-    fn look(&self, interval: &Interval, nodes: SmallVec<[Nodes; 4]>, tests: &mut usize, least: &mut f64) -> Found {
+    fn look(&self, interval: &Interval, nodes: SmallVec<[Nodes; 4]>, known: &mut Known) -> Found {
         let clearance = self.limits.clearance;
         let span = self.runs.span(interval);
         let frame = self.frame(&span.middle);
@@ -176,21 +204,26 @@ impl Search<'_> {
         let mut todo = nodes;
         while let Some((i, j)) = todo.pop() {
             let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
-            if *tests == 0 {
+            if known.tests == 0 {
                 return Found::Unknown;
             }
-            *tests -= 1;
+            known.tests -= 1;
+            let wanted = known.wanted(clearance);
             let travel = self.travel(&span, b);
             let start = frame.of(&b.centre) - a.centre;
-            let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + clearance);
+            let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + wanted);
             let low = gap.low - travel.along(&gap.direction);
-            if low > clearance {
-                *least = least.min(low);
-                continue;
+            if a.parts.is_none() && b.parts.is_none() {
+                known.nearest = known.nearest.min(gap.high);
             }
-            // What adds most to the bound is divided: a part of a body, or the time, which the last step is too short for.
+            // The last step: time is not divided further.
             let short =
                 matches!(interval, Interval::Part { .. }) && travel.most() <= self.limits.tolerance + self.widest();
+            if low > wanted || short && low > clearance {
+                known.least = known.least.min(low);
+                continue;
+            }
+            // What adds most to the bound is divided: a part of a body, or the time.
             let divided = |node: &Node| node.parts.filter(|_| short || node.radius >= travel.most());
             match (divided(a), divided(b)) {
                 (Some(parts), other) if other.is_none() || a.radius >= b.radius => {

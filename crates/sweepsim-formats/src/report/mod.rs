@@ -210,7 +210,7 @@ impl NotLookedAt {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ReportedFinding {
-    /// `collision`, `rapid`, `fixture`, `gouge`, `excess`, `spindle`, `feed` or `limit`.
+    /// `collision`, `rapid`, `fixture`, `gouge`, `excess`, `spindle`, `feed`, `machine` or `limit`.
     pub kind: String,
     /// The tool's number; none for an excess.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -249,13 +249,13 @@ pub struct ReportedFinding {
     /// It was found between the lines of the dexels, by the proof of a statement.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
-    /// What is beyond which limit (`limit`).
+    /// What is beyond which limit (`limit`), or which bodies meet (`machine`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detail: Option<String>,
     /// When it begins, as a fraction of the move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
-    /// Where: for a limit, the tool's tip.
+    /// Where: for a limit or a machine's bodies, the tool's tip.
     pub place: [f64; 3],
     /// The depth, in mm; for a limit, how far the axis is beyond it, in mm or degrees.
     pub depth: f64,

@@ -10,7 +10,7 @@ const SCHEMA: &str = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os
 const HOME: &str = env!("CARGO_PKG_REPOSITORY");
 
 /// The rules: the kinds of findings, and what else may be said.
-const RULES: [(&str, &str); 10] = [
+const RULES: [(&str, &str); 11] = [
     ("gouge", "A cutter goes deeper into the target than the limit."),
     ("excess", "Material is left on the target, higher than the limit."),
     ("rapid", "A cutter removes material in a rapid."),
@@ -21,6 +21,7 @@ const RULES: [(&str, &str); 10] = [
     ("fixture", "A tool touches a fixture, or comes too near to it."),
     ("spindle", "A cutter removes material with the spindle stopped."),
     ("feed", "A cutter removes material before the first feed is given."),
+    ("machine", "Bodies of the machine touch, or come too near to each other."),
     (
         "limit",
         "An axis of the machine is beyond its limits, or cannot reach a direction.",

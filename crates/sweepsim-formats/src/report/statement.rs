@@ -11,7 +11,9 @@ pub struct Statement {
     /// - `gouge`: a cutter in the target; `holder`: a shank or holder in it; `fixture`: any of these in a fixture;
     /// - `collision`: a shank or holder in the stock as it is at that time; `rapid`: a cutter in it in a rapid, or in
     ///   another move that must not cut;
-    /// - `excess`: material that hangs together with the target, above it.
+    /// - `excess`: material that hangs together with the target, above it;
+    /// - `machine`: bodies of the machine nearer to each other, to the tool or to the raw stock, always with
+    ///   [`Measure::Distance`].
     ///
     /// Of fixtures, holders and collisions with [`Measure::Distance`]: a shank or holder that comes nearer.
     pub about: String,

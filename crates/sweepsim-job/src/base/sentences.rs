@@ -9,6 +9,8 @@ pub fn title(finding: &ReportedFinding) -> String {
     let part = finding.body.as_deref().unwrap_or("cutter");
     let part = capital(part);
     match finding.kind.as_str() {
+        "machine" if finding.near => "Bodies of the machine too near to each other".to_owned(),
+        "machine" => "Collision of the machine".to_owned(),
         "fixture" if finding.near => format!("{part} too near to a fixture"),
         _ if finding.near => format!("{part} too near to the workpiece"),
         "collision" => format!("{part} hits the workpiece"),

@@ -130,6 +130,7 @@ pub fn found(findings: &[ReportedFinding]) -> Vec<String> {
             "gouge" => counted(*count, "gouging move"),
             "excess" => format!("{} with material left", counted(*count, "place")),
             "spindle" => format!("{} with the spindle stopped", counted(*count, "cut")),
+            "machine" => counted(*count, "collision of the machine"),
             "limit" => format!("{} beyond the machine's limits", counted(*count, "move")),
             "feed" => format!("{} without a feed", counted(*count, "cut")),
             kind => counted(*count, kind),
@@ -192,6 +193,7 @@ pub fn about(statement: &Statement) -> &str {
         "holder" => "shanks and holders beside the target",
         "collision" => "shanks and holders beside the stock",
         "rapid" => "rapids",
+        "machine" => "the machine's bodies",
         about => about,
     }
 }
@@ -257,6 +259,14 @@ pub fn proven(statement: &Statement) -> String {
         ("collision", _) => (
             format!("no shank or holder goes deeper into the stock, as it is at that time, than {limit}"),
             format!("a shank or holder goes deeper into the stock, as it is at that time, than {limit}"),
+        ),
+        ("machine", _) if statement.limit > 0.0 => (
+            format!("no bodies of the machine come nearer to each other, to the tool or to the raw stock than {limit}"),
+            format!("bodies of the machine come nearer to each other, to the tool or to the raw stock than {limit}"),
+        ),
+        ("machine", _) => (
+            "no bodies of the machine touch each other, the tool or the raw stock".to_owned(),
+            "bodies of the machine touch each other, the tool or the raw stock".to_owned(),
         ),
         ("rapid", _) => (
             format!("no rapid goes deeper into the stock, as it is at that time, than {limit}"),

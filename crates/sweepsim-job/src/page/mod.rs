@@ -191,6 +191,7 @@ fn facts(source: &PageSource) -> Vec<Fact> {
                 ("holder", _) => ("Holder in target", [&most, &least]),
                 ("collision", Measure::Distance) => ("Holder from stock", [&least, &most]),
                 ("collision", _) => ("Holder in stock", [&most, &least]),
+                ("machine", _) => ("Distance of machine bodies", [&least, &most]),
                 ("rapid", _) => ("Rapids in stock", [&most, &least]),
                 _ => ("Depth of gouges", [&most, &least]),
             };

@@ -13,7 +13,7 @@ use sweepsim_formats::{
 const MOST: usize = 500;
 
 /// The kinds of findings, in the order of their cases, and what a program needs so that some can be made.
-const KINDS: [(&str, Option<Need>); 8] = [
+const KINDS: [(&str, Option<Need>); 9] = [
     ("gouge", None),
     ("excess", None),
     ("collision", None),
@@ -21,6 +21,10 @@ const KINDS: [(&str, Option<Need>); 8] = [
     ("rapid", None),
     ("spindle", Some((has_spindle, "a program that starts the spindle"))),
     ("feed", Some((has_feed, "a program with feeds"))),
+    (
+        "machine",
+        Some((has_bodies, "a machine with bodies (--machine, or `machine` in the job)")),
+    ),
     (
         "limit",
         Some((has_limits, "a machine with limits (--machine, or `machine` in the job)")),
@@ -36,6 +40,11 @@ fn has_spindle(job: &Job) -> bool {
 
 fn has_feed(job: &Job) -> bool {
     job.paths.iter().any(|path| !path.no_feed.is_empty())
+}
+
+fn has_bodies(job: &Job) -> bool {
+    let mut machines = job.paths.iter().filter_map(|path| path.on_machine.as_ref());
+    machines.any(|on| !on.bodies.is_empty())
 }
 
 fn has_limits(job: &Job) -> bool {

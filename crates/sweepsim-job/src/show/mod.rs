@@ -6,3 +6,4 @@ pub(crate) mod shape;
 
 pub(crate) use picture::{CRISP, bounds, decimated, frame_picture, picture, share, soup};
 pub(crate) use placement::{Placement, distance, placements};
+pub(crate) use shape::covered;

@@ -12,6 +12,15 @@ const PARTS: usize = 16;
 
 /// The outline of a solid of revolution made of lines and arcs: `(ρ, ζ)` from the tip to the top.
 pub(crate) fn outline(tool: &Tool) -> Option<Vec<[f64; 2]>> {
+    with_arcs(tool, false)
+}
+
+/// The same of a solid that has all of the tool inside: tangents in the place of arcs that bulge outwards.
+pub(crate) fn covered(tool: &Tool) -> Option<Vec<[f64; 2]>> {
+    with_arcs(tool, true)
+}
+
+fn with_arcs(tool: &Tool, is_cover: bool) -> Option<Vec<[f64; 2]>> {
     let profile = tool.profile()?;
     let mut points = vec![profile.start()];
     for segment in profile.segments() {
@@ -27,8 +36,14 @@ pub(crate) fn outline(tool: &Tool) -> Option<Vec<[f64; 2]>> {
                     Turn::Cw => -(a - b).rem_euclid(std::f64::consts::TAU),
                 };
                 let parts = (way.abs() / STEP).ceil().max(1.0);
-                for k in 1..parts as usize {
-                    let (s, c) = (a + way * k as f64 / parts).sin_cos();
+                // From the tip to the top, arcs to the left bulge outwards: their tangents meet in the middle of chords.
+                let (first, radius) = match (is_cover, turn) {
+                    (true, Turn::Ccw) => (0.5, radius / (0.5 * way / parts).cos()),
+                    _ => (1.0, radius),
+                };
+                let steps = (0..parts as usize).map(|k| first + k as f64);
+                for step in steps.take_while(|step| *step < parts) {
+                    let (s, c) = (a + way * step / parts).sin_cos();
                     points.push([(centre[0] + radius * c).max(0.0), centre[1] + radius * s]);
                 }
                 points.push(*to);

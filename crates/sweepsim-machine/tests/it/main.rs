@@ -149,6 +149,12 @@ fn holds(linkage: &Linkage, [a, b]: [&Boxed; 2], corners: &Corners, outcome: &Ou
     match outcome {
         Outcome::Apart(least) => {
             prop_assert!(*least > 0.0 && first.is_none(), "{least} but {first:?}");
+            // Boxes that are near are told to be: the best of fifteen axes is no more than their distance.
+            let nearest = all
+                .clone()
+                .map(|(number, time)| apart(number, time))
+                .fold(f64::INFINITY, f64::min);
+            prop_assert!(nearest > 20.0 || *least > 0.6 * nearest - 0.01, "{least} {nearest}");
             Ok(0)
         }
         Outcome::Contact(Contact {

@@ -61,17 +61,19 @@ impl Machine {
         })
     }
 
-    /// A ready machine of the commonest kinds: one of [`names`](Self::names).
+    /// A ready machine of the commonest kinds: one of [`names`](Self::names). With sizes after its name it has limits and
+    /// bodies: `docs/machines.md` has the words.
     ///
     /// ```
     /// use sweepsim_nc::Machine;
     /// assert!(Machine::named("trunnion-ac").is_some());
     /// assert!(Machine::names().contains(&"nutating-head-bc"));
+    /// assert!(Machine::named("trunnion-ac,table=320,travel=500x400x400,zero=60,length=120").is_some());
     /// assert_eq!(Machine::named("hexapod"), None);
     /// ```
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        Self::new(ready::named(name)?).ok()
+        ready::named(name)?.and_then(Self::new).ok()
     }
 
     /// The names of the ready machines.
@@ -111,8 +113,8 @@ impl Machine {
     /// # Errors
     /// [`MachineError`]: as [`read`](Self::read), or no such file.
     pub fn read_file(file: &Path) -> Result<Self, MachineError> {
-        if let Some(ready) = file.to_str().and_then(Self::named) {
-            return Ok(ready);
+        if let Some(ready) = file.to_str().and_then(ready::named) {
+            return ready.and_then(Self::new);
         }
         let text = crate::text::whole::text(file).map_err(|error| {
             MachineError::Read(match error.kind() {

@@ -15,6 +15,7 @@ mod inverse;
 mod kinematics;
 mod machine;
 mod ready;
+mod ready_bodies;
 mod rotaries;
 
 pub use bodies::{BodyDescription, BodyShape, Carries};

@@ -1,6 +1,8 @@
 //! Ready machines: the commonest kinds, without limits that only a maker knows.
 
 use super::description::{MachineDescription, RotaryAxis};
+use super::error::MachineError;
+use super::ready_bodies::with_bodies;
 
 /// The names of the ready machines.
 pub(super) const NAMES: [&str; 12] = [
@@ -26,8 +28,20 @@ const NUTATING: [f64; 3] = [0.0, 1.0, 1.0];
 /// From the spindle's nose to the pivot of a head, in mm.
 const PIVOT: [f64; 3] = [0.0, 0.0, 150.0];
 
-/// The machine of a name.
-pub(super) fn named(name: &str) -> Option<MachineDescription> {
+/// The machine of a name, with [bodies](super::ready_bodies) if sizes follow it.
+pub(super) fn named(text: &str) -> Option<Result<MachineDescription, MachineError>> {
+    let (name, sizes) = match text.split_once(',') {
+        Some((name, sizes)) => (name, Some(sizes)),
+        None => (text, None),
+    };
+    let plain = plain(name.trim())?;
+    Some(match sizes {
+        Some(sizes) => with_bodies(plain, sizes),
+        None => Ok(plain),
+    })
+}
+
+fn plain(name: &str) -> Option<MachineDescription> {
     let name = NAMES.iter().find(|known| known.eq_ignore_ascii_case(name))?;
     let at_zero = |letter, axis| RotaryAxis::new(letter, axis, [0.0; 3]);
     let in_head = |letter, axis| RotaryAxis::new(letter, axis, PIVOT);

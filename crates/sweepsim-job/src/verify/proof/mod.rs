@@ -2,6 +2,7 @@
 
 mod bodies;
 mod excess;
+mod machine;
 mod process;
 
 use super::asked::solids;
@@ -110,6 +111,7 @@ pub(super) fn statements(
         });
     }
     all.extend(process::beside_stock(&proof, texts)?);
+    all.extend(machine::apart(&proof, texts)?);
     let (mut statements, mut findings) = (Vec::new(), Vec::new());
     let mut claims: Vec<Option<Claim>> = proof.scene.questions.iter().map(|_| None).collect();
     for Proven {

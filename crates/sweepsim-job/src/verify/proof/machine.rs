@@ -1,0 +1,327 @@
+//! What is proven of the machine's bodies: they stay apart from each other, and from all that moves with the part and
+//! the tool, at every time of every path.
+//!
+//! Tools, shanks and holders beside the workpiece and fixtures are the subject of other statements. The stock is looked
+//! at as it was before the first cut.
+
+use super::{LISTED, Proof, Proven};
+use crate::base::{JobError, words};
+use crate::show::covered;
+use crate::verify::texts::{ProgramTexts, name_of};
+use crate::verify::work;
+use nalgebra::{Unit, Vector3};
+use std::collections::BTreeSet;
+use sweepsim_dexel::{Frame, Stock};
+use sweepsim_formats::{
+    Job, JobPath, Measure, OnMachine, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness,
+};
+use sweepsim_machine::{Body, Contact, Convex, Course, Limits, Outcome, contacts};
+use sweepsim_motion::Tool;
+
+/// The most distances that are computed for a pair of bodies on a path: so many, and so many for each move.
+const TESTS: usize = 100_000;
+const TESTS_OF_MOVE: usize = 200;
+
+/// The statement about the machines of a job, if any has bodies.
+pub(super) fn apart(proof: &Proof, texts: &mut ProgramTexts) -> Result<Option<Proven>, JobError> {
+    let job = proof.session.job;
+    let clearance = |on: &OnMachine| on.course.machine().description().clearance;
+    let with_bodies = || {
+        job.paths.iter().enumerate().filter_map(|(number, path)| {
+            let on = path.on_machine.as_ref().filter(|on| !on.bodies.is_empty())?;
+            Some((number, path, on))
+        })
+    };
+    let Some(limit) = with_bodies().map(|(.., on)| clearance(on)).reduce(f64::max) else {
+        return Ok(None);
+    };
+    let mut all = Seen::new(limit);
+    for (number, path, on) in with_bodies() {
+        if proof.session.monitor.cancelled() {
+            return Err(JobError::Cancelled);
+        }
+        let crowd = Crowd::new(job, path, on);
+        let mut limits = Limits::new(clearance(on));
+        limits.tests = TESTS + TESTS_OF_MOVE * on.course.moves();
+        let found = contacts(
+            on.course.chain().linkage(),
+            &crowd.bodies,
+            &crowd.pairs,
+            &on.course,
+            &limits,
+        );
+        for (&(a, b), outcome) in crowd.pairs.iter().zip(found) {
+            let names = [a, b].map(|body| crowd.bodies[body].name.as_str());
+            let is_sure = ![a, b].iter().any(|body| crowd.loose.contains(body));
+            all.add(job, texts, (number, names), is_sure, &outcome);
+        }
+    }
+    Ok(Some(all.said()))
+}
+
+/// All bodies during a path, and the pairs of them that must stay apart.
+struct Crowd {
+    bodies: Vec<Body>,
+    pairs: Vec<(usize, usize)>,
+    /// Bodies that are known only by what they are within.
+    loose: BTreeSet<usize>,
+}
+
+impl Crowd {
+    fn new(job: &Job, path: &JobPath, on: &OnMachine) -> Self {
+        let (chain, machine) = (on.course.chain(), on.course.machine());
+        let description = machine.description();
+        let mut bodies = on.bodies.to_vec();
+        let mut loose = BTreeSet::new();
+        let own = bodies.len();
+        let zero = Vector3::from(description.part_zero);
+        let placed = Placed {
+            frame: &path.frame,
+            zero,
+        };
+        // What is on the table.
+        let fixtures = job.setups.get(path.setup).map_or(&[][..], |setup| &setup.fixtures);
+        let on_table = std::iter::once(("stock".to_owned(), &job.stock));
+        let fixtures = fixtures.iter().enumerate();
+        let on_table = on_table.chain(fixtures.map(|(k, solid)| (format!("fixture {}", k + 1), solid)));
+        for (name, stock) in on_table {
+            let mut rough = false;
+            for solid in placed.solids(stock, &mut rough) {
+                let body = Body::new(name.clone(), chain.part(), solid);
+                if rough {
+                    loose.insert(bodies.len());
+                }
+                bodies.extend(body);
+            }
+        }
+        let table = own..bodies.len();
+        // What the spindle holds: its tip is a tool's length below the nose.
+        let tip = [0.0, 0.0, -machine.tool_length(Some(path.tool))];
+        let tool = job
+            .tools
+            .get(&path.tool)
+            .map(|tool| (format!("cutter of tool {}", path.tool), tool));
+        let others = job.bodies.get(&path.tool).into_iter().flatten();
+        let others = others.map(|body| (format!("{} of tool {}", name_of(body.kind), path.tool), &body.solid));
+        for (name, tool) in tool.into_iter().chain(others) {
+            let outline = covered(tool);
+            if outline.is_none() {
+                loose.insert(bodies.len());
+            }
+            let outline = outline.unwrap_or_else(|| within(tool));
+            bodies.extend(Body::new(
+                name,
+                chain.spindle(),
+                Convex::cones(tip, Vector3::z(), &outline),
+            ));
+        }
+        // Links next to each other touch.
+        let links: BTreeSet<usize> = bodies[..own].iter().map(|body| body.link).collect();
+        let neighbours = |a: usize, b: usize| links.range(a.min(b)..=a.max(b)).count() <= 2;
+        let may_touch = |a: &str, b: &str| {
+            let same = |(c, d): &(String, String)| (c == a && d == b) || (c == b && d == a);
+            description.may_touch.iter().any(same)
+        };
+        let mut pairs = Vec::new();
+        for a in 0..own {
+            for b in a + 1..bodies.len() {
+                let (first, second) = (&bodies[a], &bodies[b]);
+                let apart = first.link != second.link && !may_touch(&first.name, &second.name);
+                if apart && (b >= own || !neighbours(first.link, second.link)) {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        debug_assert!(table.end <= bodies.len());
+        Self { bodies, pairs, loose }
+    }
+}
+
+/// A ball around all of a tool, as an outline.
+fn within(tool: &Tool) -> Vec<[f64; 2]> {
+    let reach = tool.reach();
+    vec![[reach, -reach], [reach, reach]]
+}
+
+/// Where the part is on the machine.
+struct Placed<'a> {
+    frame: &'a Frame,
+    zero: Vector3<f64>,
+}
+
+impl Placed<'_> {
+    fn point(&self, point: [f64; 3]) -> [f64; 3] {
+        (Vector3::from(self.frame.from_world(point)) + self.zero).into()
+    }
+
+    fn direction(&self, way: Vector3<f64>) -> Vector3<f64> {
+        let [from, to] = [[0.0; 3], way.into()].map(|point| Vector3::from(self.frame.from_world(point)));
+        to - from
+    }
+
+    /// Solids of machine coordinates that cover a stock; `rough` where they may be larger.
+    fn solids(&self, stock: &Stock, rough: &mut bool) -> Vec<Vec<Convex>> {
+        match stock {
+            Stock::Block { min, max } => {
+                let corner = |bits: usize| [0, 1, 2].map(|k| if bits >> k & 1 == 1 { max[k] } else { min[k] });
+                vec![vec![Convex::Hull(
+                    (0..8).map(|bits| self.point(corner(bits))).collect(),
+                )]]
+            }
+            Stock::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let axis = Unit::new_normalize(self.direction(Vector3::from(*axis)));
+                vec![Convex::cones(
+                    self.point(*base),
+                    axis.into_inner(),
+                    &[[*radius, 0.0], [*radius, *height]],
+                )]
+            }
+            Stock::Mesh(mesh) => {
+                let triangles = mesh
+                    .triangles
+                    .iter()
+                    .map(|corners| Convex::Triangle(corners.map(|p| self.point(p))));
+                vec![triangles.collect()]
+            }
+            Stock::Union(parts) => parts.iter().flat_map(|part| self.solids(part, rough)).collect(),
+            other => {
+                *rough = true;
+                let block = other.bounds().map(|[min, max]| Stock::Block { min, max });
+                block.map_or_else(Vec::new, |block| self.solids(&block, rough))
+            }
+        }
+    }
+}
+
+/// What was seen of all pairs on all paths.
+struct Seen {
+    statement: Statement,
+    least: f64,
+    nearest: f64,
+    unsure: BTreeSet<String>,
+    findings: Vec<ReportedFinding>,
+}
+
+impl Seen {
+    fn new(limit: f64) -> Self {
+        let mut statement = Statement::new("machine", limit);
+        statement.measure = Measure::Distance;
+        Self {
+            statement,
+            least: f64::INFINITY,
+            nearest: f64::INFINITY,
+            unsure: BTreeSet::new(),
+            findings: Vec::new(),
+        }
+    }
+
+    fn add(
+        &mut self,
+        job: &Job,
+        texts: &mut ProgramTexts,
+        (number, names): (usize, [&str; 2]),
+        is_sure: bool,
+        outcome: &Outcome,
+    ) {
+        match outcome {
+            Outcome::Apart(least) => self.least = self.least.min(*least),
+            Outcome::Contact(contact) if is_sure => self.touch(job, texts, (number, names), contact),
+            Outcome::Contact(contact) => self.open(job, texts, (number, names), (contact.number, contact.time)),
+            Outcome::Open(piece, time) => self.open(job, texts, (number, names), (*piece, *time)),
+        }
+    }
+
+    fn touch(&mut self, job: &Job, texts: &mut ProgramTexts, (number, names): (usize, [&str; 2]), contact: &Contact) {
+        let path = &job.paths[number];
+        let Some(on) = &path.on_machine else { return };
+        let (moved, time, is_other) = on.course.place(contact.number, contact.time);
+        let mut finding = ReportedFinding::default();
+        finding.kind = "machine".to_owned();
+        (finding.tool, finding.path, finding.r#move) = (Some(path.tool), Some(number), Some(moved));
+        finding.setup = job.has_setups.then_some(path.setup);
+        if let Some((file, line)) = work::place(path, moved, &texts.folder) {
+            finding.text = texts.line(&file, line);
+            (finding.file, finding.line) = (Some(file), Some(line));
+        }
+        finding.near = contact.distance > 0.0;
+        finding.courses = is_other.then(|| "dog-leg".to_owned());
+        finding.time = Some(time);
+        finding.depth = contact.depth;
+        finding.place = tip(path, moved, time);
+        let [a, b] = names;
+        let how = match (contact.distance > 0.0, contact.depth > 0.0) {
+            (true, _) => format!(" within {} mm", words::measure(contact.distance)),
+            (false, true) => format!(", at most {} mm deep in this move", words::measure(contact.depth)),
+            (false, false) => String::new(),
+        };
+        let verb = if contact.distance > 0.0 { "comes near" } else { "meets" };
+        finding.detail = Some(format!("{a} {verb} {b}{how}"));
+        let mut witness = StatementWitness::default();
+        (witness.path, witness.r#move) = (finding.path, finding.r#move);
+        (witness.file, witness.line, witness.text) = (finding.file.clone(), finding.line, finding.text.clone());
+        (witness.time, witness.place) = (time, finding.place);
+        witness.body = Some(a.to_owned());
+        if contact.distance < self.nearest {
+            self.nearest = contact.distance;
+            self.statement.witness = Some(witness);
+        }
+        self.findings.push(finding);
+    }
+
+    fn open(
+        &mut self,
+        job: &Job,
+        texts: &ProgramTexts,
+        (number, names): (usize, [&str; 2]),
+        (piece, time): (usize, f64),
+    ) {
+        self.statement.open_count += 1;
+        self.unsure.insert(names.join(" and "));
+        let path = &job.paths[number];
+        let Some(on) = path.on_machine.as_ref().filter(|_| self.statement.open.len() < LISTED) else {
+            return;
+        };
+        let (moved, time, _) = on.course.place(piece, time);
+        let mut place = OpenPlace::default();
+        (place.path, place.r#move, place.time) = (Some(number), Some(moved), [time, 1.0]);
+        let [x, y, z] = tip(path, moved, time);
+        place.r#box = [x, y, z, x, y, z];
+        (place.file, place.line) = work::place(path, moved, &texts.folder).unzip();
+        self.statement.open.push(place);
+    }
+
+    fn said(self) -> Proven {
+        let Self {
+            mut statement,
+            least,
+            nearest,
+            unsure,
+            findings,
+        } = self;
+        let least = if least.is_finite() { least } else { f64::MAX };
+        (statement.state, statement.enclosure) = match (findings.is_empty(), statement.open_count) {
+            (false, _) => (StatementState::Refuted, [0.0, nearest]),
+            (true, 0) => (StatementState::Proven, [least, f64::MAX]),
+            (true, _) => (StatementState::Open, [0.0, f64::MAX]),
+        };
+        if statement.state == StatementState::Open {
+            let pairs: Vec<String> = unsure.into_iter().collect();
+            statement.reason = Some(format!("not known of {}", pairs.join(", ")));
+        }
+        Proven::of(statement, findings, Vec::new())
+    }
+}
+
+/// Where the tip is then, in the coordinates of the part.
+fn tip(path: &JobPath, number: usize, time: f64) -> [f64; 3] {
+    let moves = path.path.moves();
+    let end = path.path.pose((number + 1).min(moves)).tip();
+    let start = path.path.pose(number.min(moves)).tip();
+    // On arcs this is near.
+    [0, 1, 2].map(|k| start[k] + time * (end[k] - start[k]))
+}
