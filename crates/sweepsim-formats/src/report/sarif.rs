@@ -21,7 +21,10 @@ const RULES: [(&str, &str); 11] = [
     ("fixture", "A tool touches a fixture, or comes too near to it."),
     ("spindle", "A cutter removes material with the spindle stopped."),
     ("feed", "A cutter removes material before the first feed is given."),
-    ("machine", "Bodies of the machine touch, or come too near to each other."),
+    (
+        "machine",
+        "Bodies of the machine touch, or come too near to each other.",
+    ),
     (
         "limit",
         "An axis of the machine is beyond its limits, or cannot reach a direction.",

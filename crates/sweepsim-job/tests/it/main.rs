@@ -2,6 +2,7 @@
 
 mod certificates;
 mod ci;
+mod machine;
 mod memory;
 mod scope;
 mod walls;

@@ -1,0 +1,337 @@
+//! Random programs on ready machines with bodies, judged by positions that are close in time.
+//!
+//! The judge has its own chain of turns and shifts, and its own distance of convex hulls: their closest points by the
+//! steps of M. Frank and P. Wolfe (1956), which bound it from both sides.
+
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use sweepsim_job::dexel::Stock;
+use sweepsim_job::motion::Tool;
+use sweepsim_job::{DialectOptions, Outcome, ProgramOptions, Request, StatementState};
+use sweepsim_nc::{BodyShape, Carries, Machine, MachineDescription};
+
+const SIZES: &str = ",table=300,travel=600x500x500,zero=50,length=100";
+const MACHINES: [&str; 6] = [
+    "3-axis",
+    "rotary-a",
+    "trunnion-ac",
+    "trunnion-bc",
+    "head-bc",
+    "head-b-table-c",
+];
+/// Steps of the judge in each move.
+const STEPS: usize = 60;
+
+/// A body as points whose hull it is.
+struct Hull {
+    name: String,
+    link: usize,
+    points: Vec<Vector3<f64>>,
+}
+
+fn circle(base: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
+    let side = axis.cross(&Vector3::new(0.3, 0.5, 0.8)).normalize();
+    let (u, v) = (side * radius, axis.normalize().cross(&side) * radius);
+    (0..48)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / 48.0)
+        .map(|t| base + u * t.cos() + v * t.sin())
+        .collect()
+}
+
+fn corners(min: [f64; 3], max: [f64; 3]) -> Vec<Vector3<f64>> {
+    (0..8)
+        .map(|n| Vector3::from_fn(|k, _| if n >> k & 1 == 0 { min[k] } else { max[k] }))
+        .collect()
+}
+
+/// The machine as the judge sees it: joints from the part to the tool.
+struct Judge {
+    /// Letter, direction, a point of the axis, whether it carries the part.
+    joints: Vec<(char, Vector3<f64>, Vector3<f64>, bool)>,
+    hulls: Vec<Hull>,
+    /// The number of hulls that belong to the machine.
+    own: usize,
+    length: f64,
+}
+
+impl Judge {
+    fn new(machine: &MachineDescription, stock: [[f64; 3]; 2], radius: f64, height: f64) -> Self {
+        let rotary = |axis: &sweepsim_nc::RotaryAxis, part| {
+            (
+                axis.letter,
+                Vector3::from(axis.axis).normalize(),
+                Vector3::from(axis.pivot),
+                part,
+            )
+        };
+        let linear = |carries: Carries| {
+            let axes = machine.linear.iter().filter(move |axis| axis.carries == carries);
+            axes.map(move |axis| {
+                let along = Vector3::ith(axis.letter as usize - 'X' as usize, 1.0);
+                (axis.letter, along, Vector3::zeros(), carries == Carries::Part)
+            })
+        };
+        let mut joints: Vec<_> = machine.table.iter().map(|axis| rotary(axis, true)).collect();
+        joints.extend(linear(Carries::Part));
+        joints.extend(linear(Carries::Tool));
+        joints.extend(machine.head.iter().map(|axis| rotary(axis, false)));
+        let base = joints.iter().filter(|joint| joint.3).count();
+        let link = |on: &str| match joints.iter().position(|joint| joint.0.to_string() == on) {
+            Some(n) if joints[n].3 => n,
+            Some(n) => n + 1,
+            None => base,
+        };
+        let mut hulls: Vec<Hull> = Vec::new();
+        for body in &machine.bodies {
+            let points = match &body.shape {
+                BodyShape::Block { min, max } => corners(*min, *max),
+                BodyShape::Cylinder { from, to, radius } => {
+                    let (from, to) = (Vector3::from(*from), Vector3::from(*to));
+                    [from, to]
+                        .iter()
+                        .flat_map(|end| circle(*end, to - from, *radius))
+                        .collect()
+                }
+                other => panic!("{other:?}"),
+            };
+            let (name, link) = (body.name.clone(), link(&body.on));
+            hulls.push(Hull { name, link, points });
+        }
+        let own = hulls.len();
+        hulls.push(Hull {
+            name: "stock".into(),
+            link: 0,
+            points: corners(stock[0], stock[1]),
+        });
+        let ends = [0.0, height].map(|z| Vector3::new(0.0, 0.0, z - machine.tool_length));
+        let cutter = ends.iter().flat_map(|end| circle(*end, Vector3::z(), radius)).collect();
+        hulls.push(Hull {
+            name: "cutter of tool 1".into(),
+            link: joints.len(),
+            points: cutter,
+        });
+        Self {
+            joints,
+            hulls,
+            own,
+            length: machine.tool_length,
+        }
+    }
+
+    /// From the coordinates of a link to those of the part.
+    fn frame(&self, link: usize, [xyz, abc]: [[f64; 3]; 2]) -> Isometry3<f64> {
+        let mut all = Isometry3::identity();
+        for (letter, axis, pivot, _) in &self.joints[..link] {
+            all *= match letter {
+                'X' | 'Y' => Isometry3::from(Translation3::from(axis * xyz[*letter as usize - 'X' as usize])),
+                'Z' => Isometry3::from(Translation3::from(axis * (xyz[2] + self.length))),
+                _ => {
+                    let angle = abc[*letter as usize - 'A' as usize].to_radians();
+                    let turn = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(*axis), angle);
+                    Isometry3::rotation_wrt_point(turn, Point3::from(*pivot))
+                }
+            };
+        }
+        all
+    }
+
+    fn pairs(&self) -> Vec<(usize, usize)> {
+        let links: BTreeSet<usize> = self.hulls[..self.own].iter().map(|hull| hull.link).collect();
+        let mut pairs = Vec::new();
+        for a in 0..self.own {
+            for b in a + 1..self.hulls.len() {
+                let (i, j) = (self.hulls[a].link, self.hulls[b].link);
+                let between = links
+                    .iter()
+                    .filter(|link| (i.min(j)..=i.max(j)).contains(*link))
+                    .count();
+                if i != j && (b >= self.own || between > 2) {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        pairs
+    }
+
+    /// Bounds of the distance of two hulls.
+    fn apart(&self, (a, b): (usize, usize), at: [[f64; 3]; 2]) -> [f64; 2] {
+        let seen = |n: usize| -> Vec<Vector3<f64>> {
+            let frame = self.frame(self.hulls[n].link, at);
+            self.hulls[n]
+                .points
+                .iter()
+                .map(|p| (frame * Point3::from(*p)).coords)
+                .collect()
+        };
+        let (p, q) = (seen(a), seen(b));
+        let nearest = |points: &[Vector3<f64>], u: &Vector3<f64>| {
+            *points.iter().min_by(|a, b| a.dot(u).total_cmp(&b.dot(u))).unwrap()
+        };
+        let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+        let mut v = mean(&q) - mean(&p);
+        let mut low = f64::NEG_INFINITY;
+        for _ in 0..400 {
+            let s = nearest(&q, &v) - nearest(&p, &-v);
+            low = low.max(s.dot(&v) / v.norm());
+            if v.norm() - low < 0.02 || low > 5.0 {
+                break;
+            }
+            let way = s - v;
+            v += way * (-v.dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+        }
+        [low, v.norm()]
+    }
+}
+
+/// Numbers of no pattern.
+struct Random(u64);
+
+impl Random {
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+}
+
+fn run(machine: &str, program: &str, stock: [[f64; 3]; 2]) -> Outcome {
+    let mut dialect = DialectOptions::default();
+    dialect.machine = Some(machine.to_owned());
+    let mut options = ProgramOptions::default();
+    options.dialect = dialect;
+    let request = Request::from_program("crash.nc", program)
+        .program(options)
+        .tool(1, Tool::flat(5.0, 60.0).unwrap())
+        .stock(Stock::Block {
+            min: stock[0],
+            max: stock[1],
+        })
+        .cells([8, 8]);
+    request.plan().unwrap().run(&()).unwrap()
+}
+
+/// Compares the first contact of each pair with what the judge sees. Returns how many programs had one, and how many
+/// had none.
+fn compare(programs: u64) -> [usize; 2] {
+    let stock = [[-40.0, -30.0, -50.0], [40.0, 30.0, 0.0]];
+    let mut counts = [0; 2];
+    for number in 0..programs {
+        let mut random = Random(number + 1);
+        let name = MACHINES[number as usize % MACHINES.len()];
+        let full = format!("{name}{SIZES}");
+        let machine = Machine::named(&full).expect("a machine").kinematics.expect("axes");
+        let machine = machine.description();
+        let judge = Judge::new(machine, stock, 5.0, 60.0);
+        let letters: Vec<char> = machine
+            .table
+            .iter()
+            .chain(&machine.head)
+            .map(|axis| axis.letter)
+            .collect();
+        // Moves in a room that is safe, or not quite.
+        let deep = if number % 2 == 0 { 60.0 } else { -140.0 };
+        let mut at = [[0.0, 0.0, 300.0], [0.0; 3]];
+        let mut program = "G21 G90\nT1 M6\nS1000 M3\nG1 X0 Y0 Z300 F5000\n".to_owned();
+        let mut moves = Vec::new();
+        for _ in 0..12 {
+            let mut to = at;
+            match random.within(0.0, 3.0) as usize {
+                0 if !letters.is_empty() => {
+                    let letter = letters[random.within(0.0, letters.len() as f64) as usize];
+                    let most = if letter == 'C' { 360.0 } else { 110.0 };
+                    to[1][letter as usize - 'A' as usize] = random.within(-most, most).round();
+                }
+                1 => to[0][2] = random.within(deep, 300.0).round(),
+                _ => {
+                    to[0] = [
+                        random.within(-250.0, 250.0).round(),
+                        random.within(-200.0, 200.0).round(),
+                        to[0][2],
+                    ]
+                }
+            }
+            write!(program, "G1 X{} Y{} Z{}", to[0][0], to[0][1], to[0][2]).unwrap();
+            for letter in &letters {
+                write!(program, " {letter}{}", to[1][*letter as usize - 'A' as usize]).unwrap();
+            }
+            program.push('\n');
+            moves.push((5 + moves.len(), at, to));
+            at = to;
+        }
+        program += "M30\n";
+        let outcome = run(&full, &program, stock);
+        let statements = outcome.report().statements.as_ref().expect("proofs").iter();
+        let statement = { statements }
+            .find(|statement| statement.about == "machine")
+            .expect("bodies");
+        let found: Vec<(String, usize)> = outcome
+            .findings()
+            .iter()
+            .filter(|finding| finding.kind == "machine")
+            .map(|finding| (finding.detail.clone().expect("names"), finding.line.expect("a line")))
+            .collect();
+        let mut touched = 0;
+        for pair in judge.pairs() {
+            let names = format!("{} meets {}", judge.hulls[pair.0].name, judge.hulls[pair.1].name);
+            let first = moves.iter().find_map(|(line, from, to)| {
+                let at = |k: usize| {
+                    let s = k as f64 / STEPS as f64;
+                    [0, 1].map(|n| [0, 1, 2].map(|k| from[n][k] + s * (to[n][k] - from[n][k])))
+                };
+                (0..=STEPS).find_map(|k| (judge.apart(pair, at(k))[1] < 0.05).then_some(*line))
+            });
+            let own = found.iter().find(|(detail, _)| detail.starts_with(&names));
+            match (first, own) {
+                (Some(line), Some((_, said))) => {
+                    // A contact between its times may be earlier.
+                    assert!(
+                        *said <= line,
+                        "{name} {number}: {names} in line {said}, not {line}\n{program}"
+                    );
+                    touched += 1;
+                }
+                (Some(line), None) => panic!("{name} {number}: {names} in line {line} is not found\n{program}"),
+                (None, Some((_, said))) => {
+                    // Nearer than a few millimetres at a time of the judge, if not in contact.
+                    let (_, from, to) = moves.iter().find(|(line, ..)| line == said).expect("a move");
+                    let at = |k: usize| {
+                        let s = k as f64 / 2000.0;
+                        [0, 1].map(|n| [0, 1, 2].map(|k| from[n][k] + s * (to[n][k] - from[n][k])))
+                    };
+                    let least = (0..=2000)
+                        .map(|k| judge.apart(pair, at(k))[0])
+                        .fold(f64::INFINITY, f64::min);
+                    assert!(
+                        least < 0.5,
+                        "{name} {number}: {names} in line {said}, {least} mm apart\n{program}"
+                    );
+                }
+                (None, None) => {}
+            }
+        }
+        match statement.state {
+            StatementState::Refuted => assert!(!found.is_empty()),
+            StatementState::Proven => assert_eq!((touched, found.len()), (0, 0)),
+            _ => panic!("{name} {number}: {:?}\n{program}", statement.reason),
+        }
+        counts[usize::from(found.is_empty())] += 1;
+    }
+    counts
+}
+
+#[test]
+fn crashes_are_found_at_their_lines() {
+    let [crashed, right] = compare(36);
+    assert!(crashed > 8 && right > 8, "{crashed} {right}");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn crashes_of_many_programs_are_found_at_their_lines() {
+    let [crashed, right] = compare(400);
+    println!("{crashed} programs with a collision, {right} without");
+    assert!(crashed > 100 && right > 100, "{crashed} {right}");
+}
