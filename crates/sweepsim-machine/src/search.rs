@@ -213,12 +213,13 @@ impl Search<'_> {
             let start = frame.of(&b.centre) - a.centre;
             let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + wanted);
             let low = gap.low - travel.along(&gap.direction);
-            if a.parts.is_none() && b.parts.is_none() {
+            // The middle of a box around many moves may be far from all of them.
+            let is_one = matches!(interval, Interval::Part { .. });
+            if is_one && a.parts.is_none() && b.parts.is_none() {
                 known.nearest = known.nearest.min(gap.high);
             }
             // The last step: time is not divided further.
-            let short =
-                matches!(interval, Interval::Part { .. }) && travel.most() <= self.limits.tolerance + self.widest();
+            let short = is_one && travel.most() <= self.limits.tolerance + self.widest();
             if low > wanted || short && low > clearance {
                 known.least = known.least.min(low);
                 continue;
