@@ -70,9 +70,9 @@ pub use meshes::{
     write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    Annotation, AnnotationLevel, CiCase, CiProgram, ComparisonReport, DeviationSummary, DexelCounts, HistogramBar,
-    Measure, MoveSummary, NotLookedAt, OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding, ReportedRegion,
-    Scope, ScopeLines, SetupSummary, Statement, StatementState, StatementWitness, SurfaceDeviation, ToolSummary,
-    Verdict, WorkSummary, to_junit, to_sarif, write_moves_csv,
+    Annotation, AnnotationLevel, AxisTravel, CiCase, CiProgram, ComparisonReport, DeviationSummary, DexelCounts,
+    HistogramBar, Measure, MoveSummary, NotLookedAt, OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding,
+    ReportedRegion, Scope, ScopeLines, SetupSummary, Statement, StatementState, StatementWitness, SurfaceDeviation,
+    ToolSummary, Verdict, WorkSummary, to_junit, to_sarif, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;

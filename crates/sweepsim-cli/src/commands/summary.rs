@@ -1,7 +1,7 @@
 //! The summary of `simulate`, `sweep` and `verify`.
 
 use crate::session::{Failure, Lines, Outputs};
-use sweepsim_formats::{Report, ReportedFinding, StatementState, Verdict, WorkSummary};
+use sweepsim_formats::{AxisTravel, Report, ReportedFinding, StatementState, Verdict, WorkSummary};
 use sweepsim_job::words::{self, clock, found};
 use sweepsim_job::{Plan, Task, is_covered, sentences};
 
@@ -67,6 +67,9 @@ pub(crate) fn summary(plan: &Plan, report: &Report, outputs: &Outputs, threads: 
         for summary in tools.take(NAMED) {
             line("", &format!("tool {}: {}", summary.tool, worked(&summary.work)));
         }
+    }
+    for (number, axis) in report.axes.iter().flatten().enumerate() {
+        line(if number == 0 { "axes" } else { "" }, &travelled(axis));
     }
     let counts = &report.dexels;
     let covered = words::count(counts.covered as u64);
@@ -184,6 +187,23 @@ fn located(finding: &ReportedFinding, report: &Report) -> String {
 }
 
 /// How long some moves take, and what they remove.
+/// `X −45.4 … 42.9 of −250 … 250: 204.6 left at a.nc:12`.
+fn travelled(axis: &AxisTravel) -> String {
+    let number = |value: f64| words::length((1e3 * value).round() / 1e3);
+    let [least, largest] = axis.range.map(number);
+    let unit = if axis.letter < 'X' { "°" } else { " mm" };
+    let mut text = format!("{} {least} … {largest}{unit}", axis.letter);
+    if let (Some(limits), Some(room)) = (axis.limits, axis.room) {
+        let [low, high] = limits.map(number);
+        let state = if room < 0.0 { "beyond" } else { "left" };
+        text += &format!(" of {low} … {high}: {}{unit} {state}", number(room.abs()));
+        if let (Some(file), Some(line)) = (&axis.file, axis.line) {
+            text += &format!(" at {file}:{line}");
+        }
+    }
+    text
+}
+
 fn worked(work: &WorkSummary) -> String {
     let mut text = format!(
         "{} (feed {}, rapid {}), {} mm cut and {} mm rapid",

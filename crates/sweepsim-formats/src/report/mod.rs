@@ -1,5 +1,6 @@
 //! `report.json`: the results of a run, or of a comparison, for scripts.
 
+mod axes;
 mod ci;
 mod comparison;
 mod junit;
@@ -7,6 +8,7 @@ mod sarif;
 mod statement;
 mod work;
 
+pub use axes::AxisTravel;
 pub use ci::{Annotation, AnnotationLevel, CiCase, CiProgram};
 pub use comparison::{ComparisonReport, HistogramBar, SurfaceDeviation};
 pub use junit::to_junit;
@@ -74,6 +76,9 @@ pub struct Report {
     /// What each set-up does, in their order; none in a job without set-ups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub setups: Option<Vec<SetupSummary>>,
+    /// How far the axes of the machine go, by letter, if one with limits or bodies is known (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<Vec<AxisTravel>>,
     /// What all tools do (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub work: Option<WorkSummary>,

@@ -68,7 +68,9 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     page.plots = plots(source, &made);
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
     page.tables = tables::setups(source);
-    page.tables.extend([tables::tools(source, &made), phases(source)]);
+    page.tables.push(tables::tools(source, &made));
+    page.tables.extend(tables::axes(report));
+    page.tables.push(phases(source));
     if !report.dexels.unresolved.is_empty() {
         page.tables.insert(0, unresolved(report));
     }

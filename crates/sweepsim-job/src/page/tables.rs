@@ -6,7 +6,7 @@ use crate::base::words::{self, clock};
 use crate::describe::tool_in_words;
 use crate::request::Task;
 use sweepsim_dexel::{Frame, Stock};
-use sweepsim_formats::{Job, JobPath};
+use sweepsim_formats::{AxisTravel, Job, JobPath, Report};
 use sweepsim_report::{Table, measure};
 
 /// Fixtures that are described one by one.
@@ -223,4 +223,33 @@ pub(super) fn tools(source: &PageSource, made: &Courses) -> Table {
         printed: true,
         ..Table::default()
     }
+}
+
+/// How far the axes of the machine go, and the room that is left.
+pub(super) fn axes(report: &Report) -> Option<Table> {
+    let number = |value: f64| words::length((1e3 * value).round() / 1e3);
+    let row = |axis: &AxisTravel| {
+        let [least, largest] = axis.range.map(number);
+        let limits = axis.limits.map(|limits| limits.map(number).join(" … "));
+        let place = axis.file.as_ref().zip(axis.line);
+        vec![
+            axis.letter.to_string(),
+            least,
+            largest,
+            limits.unwrap_or_else(|| "–".to_owned()),
+            axis.room.map_or_else(|| "–".to_owned(), number),
+            place.map_or_else(String::new, |(file, line)| format!("{file}:{line}")),
+        ]
+    };
+    let axes = report.axes.as_ref()?;
+    Some(Table {
+        title: "Axes of the machine".to_owned(),
+        note: "Of the spindle's nose in mm, and in degrees; the room is the least that is left to a limit.".to_owned(),
+        columns: ["Axis", "From", "To", "Limits", "Room", "Where"]
+            .map(str::to_owned)
+            .into(),
+        rows: axes.iter().map(row).collect(),
+        numbers: vec![1, 2, 4],
+        printed: true,
+    })
 }
