@@ -1,7 +1,7 @@
 //! How far two convex solids are apart.
 //!
-//! The closest point of their difference to 0 is found as by E. G. Gilbert, D. W. Johnson, S. S. Keerthi (1988). Each step
-//! gives a direction; the lower bound is what the supports of both solids along it show, however it was found.
+//! The closest point of their difference to 0 is found as by E. G. Gilbert, D. W. Johnson, S. S. Keerthi (1988). Each
+//! step gives a direction; the lower bound is what the supports of both solids along it show, however it was found.
 
 use crate::joint::Rigid;
 use crate::shape::Convex;

@@ -9,7 +9,8 @@ pub const JOINTS: usize = 6;
 /// The values of all joints: millimetres of linear joints, degrees of rotary ones. Those beyond the last joint are 0.
 pub type Values = [f64; JOINTS];
 
-/// A joint between two links. It says where points of the link nearer to the tool are, as seen from the one nearer to the part.
+/// A joint between two links. It says where points of the link nearer to the tool are, as seen from the one nearer to
+/// the part.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Joint {
     /// Moved by its value along a direction.
@@ -84,7 +85,7 @@ pub struct Linkage {
     joints: Vec<Joint>,
 }
 
-/// Where the joints are in some time: within `spread` of `middle + s way`, with `s` from -1 to 1, the same for all of them.
+/// Where the joints are in some time: within `spread` of `middle + s way`, with `s` from -1 to 1, the same for all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub middle: Values,
@@ -152,8 +153,8 @@ impl Linkage {
     /// How far points within `radius` of a point of link `of` can be from their places in the middle of a span, as seen
     /// from link `from`.
     ///
-    /// From the tool to the part: an isometry keeps what points are off, a turn by `δ` more takes one at the distance `r`
-    /// from its axis no farther than `δ r`, and turns what shifts have added.
+    /// From the tool to the part: an isometry keeps what points are off, a turn by `δ` more takes one at the distance
+    /// `r` from its axis no farther than `δ r`, and turns what shifts have added.
     pub(crate) fn travel(&self, [from, of]: [usize; 2], span: &Span, centre: &Vector3<f64>, radius: f64) -> Travel {
         let mut centre = *centre;
         let mut travel = Travel {

@@ -36,7 +36,7 @@ fn with_arcs(tool: &Tool, is_cover: bool) -> Option<Vec<[f64; 2]>> {
                     Turn::Cw => -(a - b).rem_euclid(std::f64::consts::TAU),
                 };
                 let parts = (way.abs() / STEP).ceil().max(1.0);
-                // From the tip to the top, arcs to the left bulge outwards: their tangents meet in the middle of chords.
+                // From the tip to the top, arcs to the left bulge outwards: tangents meet in the middle of chords.
                 let (first, radius) = match (is_cover, turn) {
                     (true, Turn::Ccw) => (0.5, radius / (0.5 * way / parts).cos()),
                     _ => (1.0, radius),

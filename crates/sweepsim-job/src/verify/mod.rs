@@ -11,7 +11,6 @@ mod proof;
 mod scope;
 pub(crate) mod targets;
 mod texts;
-mod travel;
 mod work;
 
 pub(crate) use certificate::text;
@@ -198,7 +197,7 @@ impl Before {
         };
         let certified = findings::describe(report, session, &done, found.as_ref())?;
         report.scope = Some(scope::scope(session, sets));
-        travel::describe(report, session);
+        axes::describe(report, session);
         let along_z = looks.into_iter().next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;
         Ok(Verified {

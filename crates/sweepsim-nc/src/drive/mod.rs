@@ -1,7 +1,6 @@
 //! Running programs on machines: from the coordinates of blocks to poses, and checks of axes.
 
 mod axes;
-mod check;
 mod circular_arc;
 mod contour;
 mod contour_queue;
@@ -14,8 +13,7 @@ mod trace;
 mod track;
 mod unknowns;
 
-pub use axes::AxesCourse;
-pub use check::{AxisFault, AxisFinding, check};
+pub use axes::{AxesCourse, AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};

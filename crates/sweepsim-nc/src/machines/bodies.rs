@@ -1,11 +1,6 @@
 //! The bodies of a machine, as `machine.ron` says them, and on which links they are.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
-
-use super::description::MachineDescription;
-use super::error::MachineError;
 
 /// A body of a machine. Its coordinates are those of the machine with all axes at 0: the spindle's nose is then at the zero point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,57 +61,9 @@ pub enum Carries {
 /// What stands still.
 pub(super) const BASE: &str = "base";
 
-impl MachineDescription {
-    /// Names of files as seen from here, where they are given beside the machine's own file.
-    pub(super) fn beside(&mut self, file: &Path) {
-        let folder = file.parent().unwrap_or_else(|| Path::new(""));
-        for body in &mut self.bodies {
-            if let BodyShape::File(name) = &mut body.shape {
-                *name = folder.join(&*name).to_string_lossy().into_owned();
-            }
-        }
-    }
-
-    /// Whether bodies have shapes, links and names that are right.
-    pub(super) fn check_bodies(&self) -> Result<(), MachineError> {
-        let value = |what: String, found: String, expected| Err(MachineError::Value { what, found, expected });
-        let axes = self.table.iter().chain(&self.head).map(|axis| axis.letter);
-        let letters: Vec<char> = axes.chain(['X', 'Y', 'Z']).collect();
-        for (number, body) in self.bodies.iter().enumerate() {
-            let known = body.on == BASE || letters.iter().any(|letter| body.on == letter.to_string());
-            if !known {
-                let expected = "the letter of one of its axes, or base";
-                return value(
-                    format!("`on` of the body {}", body.name),
-                    format!("{:?}", body.on),
-                    expected,
-                );
-            }
-            if self.bodies[..number].iter().any(|other| other.name == body.name) {
-                return value(
-                    "the name of a body".into(),
-                    format!("{:?}", body.name),
-                    "another one for each",
-                );
-            }
-            if let Err((found, expected)) = body.shape.check() {
-                return value(format!("the shape of the body {}", body.name), found, expected);
-            }
-        }
-        if !(self.clearance >= 0.0 && self.clearance.is_finite()) {
-            return value("clearance".into(), self.clearance.to_string(), "0 or more");
-        }
-        for name in self.may_touch.iter().flat_map(|(a, b)| [a, b]) {
-            if !self.bodies.iter().any(|body| body.name == *name) {
-                return value("a name in may_touch".into(), format!("{name:?}"), "that of a body");
-            }
-        }
-        Ok(())
-    }
-}
-
 impl BodyShape {
-    fn check(&self) -> Result<(), (String, &'static str)> {
+    /// Or what was found, and what was expected.
+    pub(super) fn check(&self) -> Result<(), (String, &'static str)> {
         let finite = |points: &[[f64; 3]]| points.iter().flatten().all(|c| c.is_finite());
         let shown = |point: &[f64; 3]| format!("({}, {}, {})", point[0], point[1], point[2]);
         match self {

@@ -1,10 +1,12 @@
 //! What a machine is made of, as `machine.ron` says it.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::bodies::{BodyDescription, Carries};
+use super::bodies::{BASE, BodyDescription, BodyShape, Carries};
+use super::error::MachineError;
 
 /// A machine, as written in `machine.ron`: lengths in millimetres, angles in degrees, from the part to the tool.
 ///
@@ -52,6 +54,55 @@ pub struct MachineDescription {
     /// Pairs of bodies, by their names, that are not looked at, besides those of one link or of neighbouring ones.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub may_touch: Vec<(String, String)>,
+}
+
+impl MachineDescription {
+    /// Names of files as seen from here, where they are given beside the machine's own file.
+    pub(super) fn beside(&mut self, file: &Path) {
+        let folder = file.parent().unwrap_or_else(|| Path::new(""));
+        for body in &mut self.bodies {
+            if let BodyShape::File(name) = &mut body.shape {
+                *name = folder.join(&*name).to_string_lossy().into_owned();
+            }
+        }
+    }
+
+    /// Whether bodies have shapes, links and names that are right.
+    pub(super) fn check_bodies(&self) -> Result<(), MachineError> {
+        let value = |what: String, found: String, expected| Err(MachineError::Value { what, found, expected });
+        let axes = self.table.iter().chain(&self.head).map(|axis| axis.letter);
+        let letters: Vec<char> = axes.chain(['X', 'Y', 'Z']).collect();
+        for (number, body) in self.bodies.iter().enumerate() {
+            let known = body.on == BASE || letters.iter().any(|letter| body.on == letter.to_string());
+            if !known {
+                let expected = "the letter of one of its axes, or base";
+                return value(
+                    format!("`on` of the body {}", body.name),
+                    format!("{:?}", body.on),
+                    expected,
+                );
+            }
+            if self.bodies[..number].iter().any(|other| other.name == body.name) {
+                return value(
+                    "the name of a body".into(),
+                    format!("{:?}", body.name),
+                    "another one for each",
+                );
+            }
+            if let Err((found, expected)) = body.shape.check() {
+                return value(format!("the shape of the body {}", body.name), found, expected);
+            }
+        }
+        if !(self.clearance >= 0.0 && self.clearance.is_finite()) {
+            return value("clearance".into(), self.clearance.to_string(), "0 or more");
+        }
+        for name in self.may_touch.iter().flat_map(|(a, b)| [a, b]) {
+            if !self.bodies.iter().any(|body| body.name == *name) {
+                return value("a name in may_touch".into(), format!("{name:?}"), "that of a body");
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A linear axis.

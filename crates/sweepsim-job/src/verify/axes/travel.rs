@@ -1,8 +1,8 @@
 //! How far the axes of the machine go, and where they turn far for little.
 
-use super::work;
 use crate::base::words;
 use crate::session::Session;
+use crate::verify::work;
 use sweepsim_formats::{AxisTravel, JobPath, Report};
 use sweepsim_machine::Course;
 use sweepsim_nc::{AxesCourse, Kinematics};
@@ -16,7 +16,7 @@ const FAR: f64 = 90.0;
 const LITTLE: f64 = 0.1;
 
 /// The travel of each axis, and a note of turns that do little.
-pub(super) fn describe(report: &mut Report, session: Session) {
+pub(in crate::verify) fn describe(report: &mut Report, session: Session) {
     let folder = session.folder();
     let mut axes: Vec<(AxisTravel, f64)> = Vec::new();
     let (mut flips, mut first) = (0, None);

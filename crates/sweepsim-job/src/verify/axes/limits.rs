@@ -1,9 +1,9 @@
 //! Axes of the machine beyond their limits, as findings; axes that are too slow, as a note: the machine slows the move
 //! down.
 
-use super::texts::ProgramTexts;
-use super::work;
 use crate::base::words;
+use crate::verify::texts::ProgramTexts;
+use crate::verify::work;
 use sweepsim_formats::{Job, JobPath, Report, ReportedFinding};
 use sweepsim_nc::{AxisFault, AxisFinding};
 
@@ -11,7 +11,7 @@ use sweepsim_nc::{AxisFault, AxisFinding};
 const PLACE: f64 = 1e-3;
 
 /// The findings of all paths, in the order of the program; a note in the report for speeds.
-pub(super) fn findings(job: &Job, report: &mut Report, texts: &mut ProgramTexts) -> Vec<ReportedFinding> {
+pub(in crate::verify) fn findings(job: &Job, report: &mut Report, texts: &mut ProgramTexts) -> Vec<ReportedFinding> {
     let mut all = Vec::new();
     let mut slow: Option<(String, u64)> = None;
     for (number, path) in job.paths.iter().enumerate() {

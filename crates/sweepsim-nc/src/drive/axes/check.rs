@@ -1,10 +1,8 @@
 //! Axes of a machine beyond their limits, or faster than they can.
 
-mod excursions;
-
+use super::excursions::{Excursion, excursions};
 use crate::machines::{Kinematics, Position, ReachError};
 use crate::model::program::{FeedMode, Program, ProgramPose};
-use excursions::{Excursion, excursions};
 
 /// Something that a machine cannot do.
 #[derive(Clone, Debug, PartialEq)]

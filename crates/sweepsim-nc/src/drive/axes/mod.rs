@@ -1,0 +1,8 @@
+//! What the axes of a machine do, and what they cannot.
+
+mod check;
+mod course;
+mod excursions;
+
+pub use check::{AxisFault, AxisFinding, check};
+pub use course::AxesCourse;
