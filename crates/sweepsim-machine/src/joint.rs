@@ -125,6 +125,12 @@ impl Linkage {
         (joints.len() <= JOINTS).then_some(Self { joints })
     }
 
+    /// The joints.
+    #[must_use]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
     /// The number of links.
     #[must_use]
     pub fn links(&self) -> usize {

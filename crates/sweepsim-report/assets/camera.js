@@ -14,6 +14,8 @@ class Camera {
     this.aspect = aspect;
     this.low = low;
     this.high = high;
+    /** How far things reach beyond the part. */
+    this.beyond = 0;
     this.home();
   }
 
@@ -50,7 +52,7 @@ class Camera {
   matrix(aspect) {
     this.aspect = aspect;
     const angle = 2 * Math.atan(halves(aspect)[1]);
-    const far = this.distance + 4 * this.reach + size(sub(this.centre, mix(this.low, this.high, 0.5)));
+    const far = this.distance + 4 * this.reach + this.beyond + size(sub(this.centre, mix(this.low, this.high, 0.5)));
     const near = Math.max(this.distance - far + this.distance, this.distance * 0.02);
     return product(perspective(angle, aspect, Math.min(near, this.distance * 0.2), far), lookAt(this.eye, this.centre, [0, 0, 1]));
   }

@@ -10,13 +10,15 @@ const SECTION = rgb("#7b4f72");
 const FIXTURE = rgb("#56616f");
 const TARGET = rgb("#3f9c8f");
 const BODY = rgb("#8a929c");
+const MACHINE = rgb("#7f8ea3");
+const MEETING = rgb("#d1341f");
 const CUTTER = rgb("#e8b04a");
 
 /** Tools, by number. */
 const TOOLS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442", "#8c6bb1"].map(rgb);
 
 /** Kinds of findings, and states of proofs. */
-const KINDS = { collision: "#c2410c", rapid: "#9333a8", fixture: "#b45309", gouge: "#be123c", excess: "#1d4ed8", proven: "#0f6b4f", refuted: "#a3160f", open: "#7a4a00" };
+const KINDS = { collision: "#c2410c", machine: "#c2410c", rapid: "#9333a8", fixture: "#b45309", gouge: "#be123c", excess: "#1d4ed8", proven: "#0f6b4f", refuted: "#a3160f", open: "#7a4a00" };
 const OTHER_KIND = "#475569";
 
 /** Multiples of the limits, and the colours between them: too deep on the left, too much left on the right. */

@@ -215,7 +215,9 @@ function withViewer(viewer, markers) {
     const { camera } = viewer;
     if (marker.clock != null) setClock(marker.clock);
     canvas.dataset.flying = "1";
-    camera.fly(marker.place, Math.min(camera.distance, 2.2 * camera.reach), Math.max(camera.elevation, 0.45));
+    // Bodies of the machine are larger than the part.
+    const far = marker.kind === "machine" ? 2.5 * camera.beyond : Math.min(camera.distance, 2.2 * camera.reach);
+    camera.fly(viewer.held(marker.place), far, Math.max(camera.elevation, 0.45));
     viewer.ask();
     if (scroll) all(".finding")[number].scrollIntoView({ block: "nearest" });
   };

@@ -106,11 +106,16 @@ function readMeshes(head) {
   const tools = head.meshes.tools.map((tool) => ({ name: tool.name, cutter: shapes(tool.cutter), bodies: shapes(tool.bodies) }));
   // The fixtures of each set-up by themselves.
   const solids = { stock: new Triangles(), target: new Triangles(), fixture: new Triangles() };
+  const bodies = [];
   for (const solid of head.meshes.solids) {
+    if (solid.kind === "body") {
+      bodies.push({ link: solid.link, triangles: mesh(solid, new Triangles()) });
+      continue;
+    }
     const name = solid.setup == null ? solid.kind : `${solid.kind} ${solid.setup}`;
     mesh(solid, (solids[name] ??= new Triangles()));
   }
-  return { tools, solids };
+  return { tools, solids, bodies };
 }
 
 /** The way of the tools, and where they are at a time. */

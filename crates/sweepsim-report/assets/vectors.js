@@ -18,6 +18,13 @@ function product(a, b) {
   return c;
 }
 
+/** The inverse of a turn and a shift. */
+function inverted(m) {
+  const row = (i) => [m[4 * i], m[4 * i + 1], m[4 * i + 2]];
+  const [a, b, c, o] = [0, 1, 2, 3].map(row);
+  return [a[0], b[0], c[0], 0, a[1], b[1], c[1], 0, a[2], b[2], c[2], 0, -dot(a, o), -dot(b, o), -dot(c, o), 1];
+}
+
 /** A point under a matrix, with its fourth coordinate. */
 function transformed(m, p) {
   const row = (i) => m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i];

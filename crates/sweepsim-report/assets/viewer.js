@@ -19,7 +19,14 @@ class Viewer {
       shape.plain(part.places, part.normals);
       return shape;
     }));
-    this.shown = { target: false, fixture: true, stock: false, tool: true, path: false };
+    this.machine = head.machine ? new Machine(head) : null;
+    this.bodies = this.meshes.bodies.map(({ link, triangles }) => {
+      const shape = new Shape(gl);
+      shape.plain(triangles.places, triangles.normals);
+      return { link, shape };
+    });
+    const meets = this.machine?.contacts.length > 0;
+    this.shown = { target: false, fixture: true, stock: false, tool: true, path: false, machine: meets, still: false };
     this.clock = this.track?.end ?? 0;
     this.section = null;
     this.measured = [];
@@ -27,6 +34,7 @@ class Viewer {
     if (this.track) this.drawPath();
     const [low, high] = this.extent();
     this.camera = new Camera(low, high, canvas.clientWidth / canvas.clientHeight || 1);
+    if (this.machine) this.camera.beyond = this.machine.reach(this.meshes.bodies, this.camera.centre);
     this.rebuilt = -1;
     this.mode = "plain";
     const asked = () => this.ask();
@@ -149,9 +157,9 @@ class Viewer {
     const ratio = Math.min(devicePixelRatio || 1, 2);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((c) => Math.round(c * ratio));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const view = camera.matrix(width / height);
+    const view = product(camera.matrix(width / height), this.hold);
     this.view = view;
-    gpu.begin(width, height, view, camera.eye, this.plane(), pass);
+    gpu.begin(width, height, view, transformed(inverted(this.hold), camera.eye).slice(0, 3), this.plane(), pass);
     gpu.draw(shapes.part, { model: this.frame });
     if (shown.fixture) {
       gpu.draw(shapes.fixture, { colour: FIXTURE });
@@ -161,6 +169,7 @@ class Viewer {
     canvas.dataset.setup = this.setup;
     if (pass === 2) return;
     if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
+    if (shown.machine && this.machine) this.drawMachine();
     if (shown.path) {
       gpu.draw(shapes.path, { colour: rgb("#0b7a75"), unlit: true, uncut: true });
       gpu.draw(shapes.rapid, { colour: rgb("#c2410c"), unlit: true, uncut: true });
@@ -180,6 +189,27 @@ class Viewer {
     const model = framed([at.tip, x, cross(at.axis, x), at.axis]);
     this.gpu.draw(tool[0], { model, colour: CUTTER, uncut: true });
     this.gpu.draw(tool[1], { model, colour: BODY, alpha: 0.55, uncut: true });
+  }
+
+  /** From the world to what the camera sees: with the base still, the part moves. */
+  get hold() {
+    return this.machine && this.shown.still ? this.machine.hold(this.clock) : IDENTITY;
+  }
+
+  /** Where the camera sees a point of the world. */
+  held(p) {
+    return transformed(this.hold, p).slice(0, 3);
+  }
+
+  drawMachine() {
+    const frames = this.machine.frames(this.clock);
+    const meeting = this.machine.meeting(this.clock);
+    // What is solid first, then what is seen through.
+    const order = this.bodies.map((body, n) => ({ ...body, met: meeting.includes(n) })).sort((a, b) => b.met - a.met);
+    for (const { link, shape, met } of order) {
+      this.gpu.draw(shape, { model: frames[link], colour: met ? MEETING : MACHINE, alpha: met ? 0.8 : 0.4, uncut: true });
+    }
+    this.canvas.dataset.meeting = meeting.join(" ");
   }
 
   /** Where a point of the world is on the canvas, in its pixels, and how deep. */
@@ -207,7 +237,8 @@ class Viewer {
     const [u, v] = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
     const far = m[14] / (2 * depth - 1 + m[10]);
     const place = add(camera.eye, scaled(forward, far));
-    return add(place, add(scaled(right, (u * far) / m[0]), scaled(up, (v * far) / m[5])));
+    const seen = add(place, add(scaled(right, (u * far) / m[0]), scaled(up, (v * far) / m[5])));
+    return transformed(inverted(this.hold), seen).slice(0, 3);
   }
 
   /** What is known of the surface near a point. */

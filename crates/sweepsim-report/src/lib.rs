@@ -43,8 +43,8 @@ pub use html::measure;
 pub use page::{Page, Picture, Verdict, VerdictState};
 pub use plots::{Bar, Histogram, Plot};
 pub use scene::{
-    Area, Course, DexelLayer, KeyFrame, LayerEnd, ProgramText, Scene, Solid, SolidKind, ToolPart, ToolShape, Track,
-    TrackPoint,
+    Area, Course, DexelLayer, JOINTS, KeyFrame, LayerEnd, Machine, MachineJoint, MachinePoint, ProgramText, Scene,
+    Solid, SolidKind, ToolPart, ToolShape, Track, TrackPoint,
 };
 pub use tables::{Fact, Table};
 

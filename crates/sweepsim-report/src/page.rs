@@ -18,12 +18,13 @@ const STYLES: [&str; 3] = [
 ];
 
 /// The scripts share one function: each uses what those before it declare.
-const SCRIPTS: [&str; 11] = [
+const SCRIPTS: [&str; 12] = [
     include_str!("../assets/data.js"),
     include_str!("../assets/vectors.js"),
     include_str!("../assets/layers.js"),
     include_str!("../assets/surface.js"),
     include_str!("../assets/solids.js"),
+    include_str!("../assets/machine.js"),
     include_str!("../assets/colours.js"),
     include_str!("../assets/gpu.js"),
     include_str!("../assets/camera.js"),

@@ -212,9 +212,52 @@ pub enum SolidKind {
     Target,
     /// Something that holds the workpiece.
     Fixture,
+    /// A body of the machine, in the coordinates of a link of its chain: see [`Machine`].
+    Body {
+        /// The link.
+        link: u16,
+    },
 }
 
-/// A solid as triangles in the world, counter-clockwise seen from outside.
+/// The most joints of a machine.
+pub const JOINTS: usize = 6;
+
+/// A joint of a machine: it says where points of the next link are, as seen from the one before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineJoint {
+    /// The direction of a shift, or the axis of a turn: a unit vector.
+    pub axis: [f64; 3],
+    /// A point of the axis of a turn by degrees; a joint without one shifts by millimetres.
+    pub pivot: Option<[f64; 3]>,
+}
+
+/// The values of all joints at a time. Between two points they are interpolated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachinePoint {
+    /// The time on the program's clock.
+    pub clock: f64,
+    /// The values.
+    pub values: [f64; JOINTS],
+    /// Whether nothing leads here from the point before.
+    pub begins: bool,
+}
+
+/// A machine: a chain of links from the part, link 0, to the tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    /// The joints; at most [`JOINTS`].
+    pub joints: Vec<MachineJoint>,
+    /// The link that stands still.
+    pub base: usize,
+    /// The origin and the axes of link 0 in the world.
+    pub place: [[f64; 3]; 4],
+    /// What the joints do, by time.
+    pub points: Vec<MachinePoint>,
+    /// When bodies meet, and which: by their order among the solids that are bodies.
+    pub contacts: Vec<(f64, Vec<u16>)>,
+}
+
+/// A solid as triangles in the world, or on a link of the machine, counter-clockwise seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// What it is.
@@ -259,6 +302,8 @@ pub struct Scene {
     pub setups: Vec<(u32, String)>,
     /// Stock, target and fixtures.
     pub solids: Vec<Solid>,
+    /// The machine with what its axes do, if it is shown.
+    pub machine: Option<Machine>,
     /// The programs.
     pub programs: Vec<ProgramText>,
 }
@@ -277,6 +322,7 @@ impl Scene {
             paths: Vec::new(),
             setups: Vec::new(),
             solids: Vec::new(),
+            machine: None,
             programs: Vec::new(),
         }
     }

@@ -43,12 +43,19 @@ pub(crate) fn markup(html: &mut String, scene: &Scene) {
     }
     html.push_str("</div>\n<div class=\"group\" aria-label=\"Show\">\n");
     let has = |kind| scene.solids.iter().any(|solid| solid.kind == kind);
+    // The machine hides the part: it is there at first only if its bodies meet.
+    let meets = scene
+        .machine
+        .as_ref()
+        .is_some_and(|machine| !machine.contacts.is_empty());
     let switches = [
         ("target", "Target", has(SolidKind::Target), false),
         ("fixture", "Fixtures", has(SolidKind::Fixture), true),
         ("stock", "Stock", has(SolidKind::Stock), false),
         ("tool", "Cutter", scene.track.is_some(), true),
         ("path", "Path", scene.track.is_some(), false),
+        ("machine", "Machine", scene.machine.is_some(), meets),
+        ("still", "Base still", scene.machine.is_some(), false),
     ];
     for (what, name, _, on) in switches.iter().filter(|(_, _, offered, _)| *offered) {
         let _ = writeln!(

@@ -130,7 +130,7 @@ pub fn found(findings: &[ReportedFinding]) -> Vec<String> {
             "gouge" => counted(*count, "gouging move"),
             "excess" => format!("{} with material left", counted(*count, "place")),
             "spindle" => format!("{} with the spindle stopped", counted(*count, "cut")),
-            "machine" => counted(*count, "collision of the machine"),
+            "machine" => counted(*count, "machine collision"),
             "limit" => format!("{} beyond the machine's limits", counted(*count, "move")),
             "feed" => format!("{} without a feed", counted(*count, "cut")),
             kind => counted(*count, kind),
@@ -279,7 +279,9 @@ pub fn proven(statement: &Statement) -> String {
     };
     let bounds = [
         (least > 0.0).then(|| format!("at least {} mm", measure(least))),
-        (most < f64::MAX).then(|| format!("at most {} mm", measure(most))),
+        // What touches is no distance.
+        (most < f64::MAX && (most > 0.0 || statement.measure != Measure::Distance))
+            .then(|| format!("at most {} mm", measure(most))),
     ];
     let [lower, upper] = bounds;
     let known = match statement.measure {

@@ -2,6 +2,7 @@
 
 mod course;
 mod deviation;
+mod machine;
 mod program;
 mod proofs;
 mod solids;
@@ -140,6 +141,10 @@ fn scene(source: &PageSource, deviated: Option<&Deviated>, made: Courses, progra
         .map(|(path, end)| (end, tool(path.tool)))
         .collect();
     scene.setups = setups_of(job, &made);
+    if let Some((machine, bodies)) = machine::machine(source, &made) {
+        scene.machine = Some(machine);
+        scene.solids.extend(bodies);
+    }
     scene.programs = programs.into_texts();
     scene.track = Some(made.track);
     scene.course = made.course;

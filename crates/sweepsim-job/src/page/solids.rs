@@ -39,7 +39,7 @@ pub(super) fn solids(job: &Job, task: Task) -> Vec<Solid> {
     solids
 }
 
-type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+pub(super) type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// The surfaces of a solid; of intersections and differences, that of their first part.
 fn meshes(stock: &Stock) -> Vec<Triangles> {
@@ -90,7 +90,7 @@ fn of_soup(soup: &TriangleSoup) -> Option<Triangles> {
     Some((mesh.vertices, mesh.triangles))
 }
 
-fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
+pub(super) fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
     let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
     let faces: [[u32; 4]; 6] = [
         [0, 2, 3, 1],
@@ -115,6 +115,11 @@ fn band(from: u32, to: u32, triangles: &mut Vec<[u32; 3]>) {
 }
 
 fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangles {
+    cone(base, axis, [[radius, 0.0], [radius, height]])
+}
+
+/// What is turned about an axis between two circles of radius and height.
+pub(super) fn cone(base: [f64; 3], axis: [f64; 3], circles: [[f64; 2]; 2]) -> Triangles {
     let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
     let z = axis.map(|c| c / length);
     let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
@@ -125,8 +130,8 @@ fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangl
     let size = x.iter().map(|c| c * c).sum::<f64>().sqrt();
     let x = x.map(|c| c / size);
     let y = cross(z, x);
-    let mut vertices = vec![base, [0, 1, 2].map(|k| base[k] + height * z[k])];
-    for up in [0.0, height] {
+    let mut vertices: Vec<[f64; 3]> = circles.map(|[_, up]| [0, 1, 2].map(|k| base[k] + up * z[k])).into();
+    for [radius, up] in circles {
         for side in 0..SIDES {
             let turn = side as f64 / SIDES as f64 * std::f64::consts::TAU;
             let (s, c) = turn.sin_cos();

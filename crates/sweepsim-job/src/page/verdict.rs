@@ -80,7 +80,8 @@ pub(super) fn findings(
             fact("Tool", format!("T{tool}"));
         }
         if let Some(detail) = &found.detail {
-            fact("Axis", detail.clone());
+            let what = if found.kind == "machine" { "Bodies" } else { "Axis" };
+            fact(what, detail.clone());
         } else {
             fact("Depth", format!("{} mm", measure(found.depth)));
             match found.between {

@@ -65,6 +65,11 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
         let needs = needs("`fixtures` in the job", "a job with `fixtures`");
         all.push(NotLookedAt::new("fixtures", needs, &["fixture"]));
     }
+    let mut machines = job.paths.iter().filter_map(|path| path.on_machine.as_ref());
+    if machines.any(|on| on.bodies.is_empty()) {
+        let needs = "`bodies` in the machine's file";
+        all.push(NotLookedAt::new("bodies of the machine", needs, &["machine"]));
+    }
     if is_guessed(session) {
         let needs = needs("`stock` in the job", "--stock");
         let about = "rapids through the real stock: it was guessed";

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::Tool;
-use sweepsim_job::{DialectOptions, Outcome, ProgramOptions, Request, StatementState};
+use sweepsim_job::{DialectOptions, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
 use sweepsim_nc::{BodyShape, Carries, Machine, MachineDescription};
 
 const SIZES: &str = ",table=300,travel=600x500x500,zero=50,length=100";
@@ -334,4 +334,44 @@ fn crashes_of_many_programs_are_found_at_their_lines() {
     let [crashed, right] = compare(400);
     println!("{crashed} programs with a collision, {right} without");
     assert!(crashed > 100 && right > 100, "{crashed} {right}");
+}
+
+/// The page has the machine with what its axes do, and when its bodies meet.
+#[test]
+fn the_page_shows_the_machine() {
+    let stock = [[-40.0, -30.0, -50.0], [40.0, 30.0, 0.0]];
+    let program = "G21 G90\nT1 M6\nS1000 M3\nG1 X0 Y0 Z300 F5000\nG1 X100 Z200 A90\nG1 Z-120\nG1 Z200\nM30\n";
+    let outcome = run(&format!("trunnion-ac{SIZES}"), program, stock);
+    let mut memory = Memory::default();
+    outcome.write_to(&mut memory, &[Output::Report], &()).unwrap();
+    let page = String::from_utf8_lossy(memory.0.get("report.html").expect("a page")).into_owned();
+    let head = page
+        .split("id=\"head\">")
+        .nth(1)
+        .and_then(|rest| rest.split("</script>").next())
+        .expect("a head");
+    let head: serde_json::Value = serde_json::from_str(head).unwrap();
+    let machine = &head["machine"];
+    assert_eq!(machine["joints"].as_array().unwrap().len(), 5);
+    assert_eq!(
+        (&machine["base"], &machine["joints"][0]["axis"]),
+        (&2.into(), &serde_json::json!([0.0, 0.0, 1.0]))
+    );
+    // The spindle goes down beside the part, through the table that stands upright.
+    let findings: Vec<_> = outcome
+        .findings()
+        .iter()
+        .filter(|finding| finding.kind == "machine")
+        .collect();
+    assert!(
+        !findings.is_empty() && findings.iter().all(|finding| finding.line == Some(6)),
+        "{findings:?}"
+    );
+    assert_eq!(machine["contacts"].as_array().unwrap().len(), findings.len());
+    let bodies = head["meshes"]["solids"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|solid| solid["kind"] == "body");
+    assert_eq!(bodies.count(), 7);
 }

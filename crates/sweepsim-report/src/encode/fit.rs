@@ -2,6 +2,7 @@
 
 use super::arrays::{Arrays, Entry, Scale};
 use super::layers::{self, CourseHead, HEIGHTS, LayerHead};
+use super::machine::{self, MachineHead};
 use super::others::{self, MeshHead, TrackHead};
 use crate::scene::{DexelLayer, KeyFrame, Scene};
 use serde::Serialize;
@@ -19,6 +20,7 @@ pub(crate) struct Head {
     course: Option<CourseHead>,
     track: Option<TrackHead>,
     meshes: MeshHead,
+    machine: Option<MachineHead>,
     paths: Vec<(u32, u16)>,
     setups: Vec<(u32, String)>,
     programs: Vec<String>,
@@ -56,6 +58,10 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     let (programs, texts) = others::programs(&scene.programs);
     let mut fixed = mesh_arrays;
     if let Some((_, arrays)) = &track {
+        fixed.append(arrays);
+    }
+    let machine = scene.machine.as_ref().map(machine::machine);
+    if let Some((_, arrays)) = &machine {
         fixed.append(arrays);
     }
     let mut left_out = Vec::new();
@@ -126,6 +132,7 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         course,
         track: track.map(|(head, _)| head),
         meshes,
+        machine: machine.map(|(head, _)| head),
         paths: scene.paths.clone(),
         setups: scene.setups.clone(),
         programs: names,

@@ -5,6 +5,7 @@
 mod arrays;
 mod fit;
 mod layers;
+mod machine;
 mod others;
 
 pub(crate) use fit::{Embedded, embed};

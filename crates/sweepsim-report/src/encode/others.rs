@@ -69,6 +69,8 @@ pub(crate) struct SolidHead {
     kind: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     setup: Option<u16>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    link: Option<u16>,
     vertices: usize,
     triangles: usize,
 }
@@ -127,10 +129,16 @@ pub(crate) fn meshes(tools: &[ToolPart], solids: &[Solid]) -> (MeshHead, Arrays)
                 SolidKind::Stock => "stock",
                 SolidKind::Target => "target",
                 SolidKind::Fixture => "fixture",
+                SolidKind::Body { .. } => "body",
+            };
+            let link = match solid.kind {
+                SolidKind::Body { link } => Some(link),
+                _ => None,
             };
             SolidHead {
                 kind,
                 setup: solid.setup,
+                link,
                 vertices,
                 triangles,
             }
