@@ -7,6 +7,7 @@ use sweepsim_motion::{RotaryTable, Turning};
 
 use super::description::MachineDescription;
 use super::error::MachineError;
+use super::fcm;
 use super::kinematics::Kinematics;
 use super::ready;
 
@@ -108,7 +109,7 @@ impl Machine {
         Self::new(description(text)?)
     }
 
-    /// Reads a machine from a file, or takes the ready one of this name.
+    /// Reads a machine from a file, also from FreeCAD's `.fcm`, or takes the ready one of this name.
     ///
     /// # Errors
     /// [`MachineError`]: as [`read`](Self::read), or no such file.
@@ -124,7 +125,14 @@ impl Machine {
                 _ => error.to_string(),
             })
         })?;
-        let mut found = description(&text)?;
+        let is_of_freecad = file
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("fcm"));
+        let mut found = if is_of_freecad {
+            fcm::description(&text)?
+        } else {
+            description(&text)?
+        };
         found.beside(file);
         Self::new(found)
     }

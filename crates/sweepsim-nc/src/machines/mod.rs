@@ -10,6 +10,7 @@ mod bodies;
 mod chain;
 mod description;
 mod error;
+mod fcm;
 mod frame;
 mod inverse;
 mod kinematics;
