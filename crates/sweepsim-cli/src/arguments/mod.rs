@@ -13,7 +13,7 @@ use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_job::DeviationLimits;
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, length, limits, pair, parsed, plane, section, size, tile, tolerance};
+use values::{area, camera, cells, length, limits, pair, parsed, plane, section, size, tile, tolerance, triple};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -204,6 +204,13 @@ pub(crate) struct JudgeOptions {
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
     #[arg(long)]
     pub moves: bool,
+    /// Judges the machine for all places of the part this far from where it is, like 5,5,2 in millimetres along x, y
+    /// and z, one way or the other.
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple)]
+    pub offset_range: Option<[f64; 3]>,
+    /// Judges the machine for all tools this much longer or shorter than it takes them, in millimetres.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub length_range: Option<f64>,
 }
 
 #[derive(Debug, Args)]

@@ -101,6 +101,8 @@ impl JudgeOptions {
         (judging.first, judging.clearance) = (self.first, self.clearance);
         (judging.sure, judging.moves) = (self.sure, self.moves);
         judging.proof = !self.no_proof;
+        judging.offset_range = self.offset_range.unwrap_or_default();
+        judging.length_range = self.length_range.unwrap_or_default();
         judging
     }
 }

@@ -56,6 +56,15 @@ pub(super) fn pair(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
+/// `5,5,2`: lengths along x, y and z.
+pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
+    match numbers[..] {
+        [Ok(x), Ok(y), Ok(z)] if [x, y, z].iter().all(|way| *way >= 0.0 && way.is_finite()) => Ok([x, y, z]),
+        _ => Err("expected three lengths, along x, y and z, like 5,5,2".to_owned()),
+    }
+}
+
 /// `D3=0.25`, or `3=0.25`.
 pub(super) fn diameter(text: &str) -> Result<(u32, f64), String> {
     let parts = text.trim().trim_start_matches(['D', 'd']).split_once('=');

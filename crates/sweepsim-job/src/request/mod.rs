@@ -325,8 +325,15 @@ impl Request {
             }
         }
         let [gouge, excess] = self.limits.unwrap_or_default();
-        let lengths = [gouge, excess, self.judging.clearance.unwrap_or_default()];
-        for (field, value) in ["limits", "limits", "clearance"].into_iter().zip(lengths) {
+        let judging = &self.judging;
+        let mut lengths = vec![
+            ("limits", gouge),
+            ("limits", excess),
+            ("length range", judging.length_range),
+        ];
+        lengths.extend(judging.clearance.map(|clearance| ("clearance", clearance)));
+        lengths.extend(judging.offset_range.map(|offset| ("offset range", offset)));
+        for (field, value) in lengths {
             if !(value >= 0.0 && value.is_finite()) {
                 let why = "expected a number of millimetres, 0 or greater";
                 return Err(JobError::request(field, why));

@@ -136,6 +136,10 @@ pub struct Judging {
     pub moves: bool,
     /// Whether to prove what can be proven between the lines of the dexels.
     pub proof: bool,
+    /// How far the part may be from its place on the machine along x, y and z, one way or the other, in millimetres.
+    pub offset_range: [f64; 3],
+    /// How much longer or shorter tools may be than the machine takes them, in millimetres.
+    pub length_range: f64,
 }
 
 impl Default for Judging {
@@ -146,6 +150,8 @@ impl Default for Judging {
             sure: false,
             moves: false,
             proof: true,
+            offset_range: [0.0; 3],
+            length_range: 0.0,
         }
     }
 }

@@ -70,6 +70,16 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
         let needs = "`bodies` in the machine's file";
         all.push(NotLookedAt::new("bodies of the machine", needs, &["machine"]));
     }
+    let judging = &session.request.judging;
+    let is_ranged = judging.length_range > 0.0 || judging.offset_range != [0.0; 3];
+    if is_ranged && job.paths.iter().all(|path| path.on_machine.is_none()) {
+        let needs = "a machine with limits or bodies (--machine)";
+        all.push(NotLookedAt::new(
+            "other places of the part and lengths of tools",
+            needs,
+            &["machine"],
+        ));
+    }
     if is_guessed(session) {
         let needs = needs("`stock` in the job", "--stock");
         let about = "rapids through the real stock: it was guessed";

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::Tool;
-use sweepsim_job::{DialectOptions, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
+use sweepsim_job::{DialectOptions, Judging, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
 use sweepsim_nc::{BodyShape, Carries, Machine, MachineDescription};
 
 const SIZES: &str = ",table=300,travel=600x500x500,zero=50,length=100";
@@ -198,6 +198,10 @@ impl Random {
 }
 
 fn run(machine: &str, program: &str, stock: [[f64; 3]; 2]) -> Outcome {
+    judged(machine, program, stock, Judging::default())
+}
+
+fn judged(machine: &str, program: &str, stock: [[f64; 3]; 2], judging: Judging) -> Outcome {
     let mut dialect = DialectOptions::default();
     dialect.machine = Some(machine.to_owned());
     let mut options = ProgramOptions::default();
@@ -209,7 +213,8 @@ fn run(machine: &str, program: &str, stock: [[f64; 3]; 2]) -> Outcome {
             min: stock[0],
             max: stock[1],
         })
-        .cells([8, 8]);
+        .cells([8, 8])
+        .judging(judging);
     request.plan().unwrap().run(&()).unwrap()
 }
 
@@ -374,4 +379,40 @@ fn the_page_shows_the_machine() {
         .iter()
         .filter(|solid| solid["kind"] == "body");
     assert_eq!(bodies.count(), 7);
+}
+
+/// A cutter that comes to 5 mm above the table, and an axis that comes to 50 mm of its limit.
+#[test]
+fn a_verdict_holds_for_other_places_and_lengths() {
+    let stock = [[-40.0, -30.0, -50.0], [40.0, 30.0, 0.0]];
+    let program = "G21 G90\nT1 M6\nS1000 M3\nG1 X0 Y0 Z200 F5000\nG1 X120\nG1 Z-45\nG1 Z200\nG1 X250\nM30\n";
+    let state = |offset_range: [f64; 3], length_range: f64| {
+        let mut judging = Judging::default();
+        (judging.offset_range, judging.length_range) = (offset_range, length_range);
+        let outcome = judged(&format!("3-axis{SIZES}"), program, stock, judging);
+        let statements = outcome.report().statements.as_ref().expect("proofs");
+        let own = statements
+            .iter()
+            .find(|statement| statement.about == "machine")
+            .expect("bodies");
+        (own.state, own.reason.clone().unwrap_or_default())
+    };
+    assert_eq!(state([0.0; 3], 0.0).0, StatementState::Proven);
+    assert_eq!(state([0.0, 0.0, 4.9], 0.0).0, StatementState::Proven);
+    assert_eq!(state([0.0, 0.0, 2.0], 1.4).0, StatementState::Proven);
+    for (offset, length, why) in [
+        ([0.0, 0.0, 5.1], 0.0, "not known of table and cutter of tool 1"),
+        ([0.0; 3], 5.1, "not known of table and cutter of tool 1"),
+        (
+            [50.5, 0.0, 0.0],
+            0.0,
+            "X has 50 mm to its limit at crash.nc:8, and may need 50.5 mm",
+        ),
+    ] {
+        let (state, reason) = state(offset, length);
+        assert!(
+            state == StatementState::Open && reason.contains(why),
+            "{offset:?} {length}: {reason}"
+        );
+    }
 }

@@ -93,6 +93,33 @@ impl Chain {
         Some(if joint < self.base { joint } else { joint + 1 })
     }
 
+    /// How far its joints may be from where they are, if the part is moved by up to `offset` along x, y and z, one way or the other, and the
+    /// tool is up to `length` longer or shorter: the tip stays on the part.
+    ///
+    /// A table that turns carries a shift of the part any way, and so does a head that of the tip.
+    #[must_use]
+    pub fn spread(&self, machine: &Kinematics, offset: [f64; 3], length: f64) -> Values {
+        let [table, head] = machine.joints();
+        let [directions, inverse] = machine.directions();
+        let (offset, size) = (Vector3::from(offset), Vector3::from(offset).norm());
+        let is_plain = *directions == nalgebra::Matrix3::identity();
+        let mut spread = [0.0; JOINTS];
+        for (own, letter) in spread.iter_mut().zip(&self.letters) {
+            let Some(k) = ['X', 'Y', 'Z'].iter().position(|linear| linear == letter) else {
+                continue;
+            };
+            let most = inverse.row(k).norm();
+            let of_part = if table.is_empty() && is_plain {
+                offset[k]
+            } else {
+                most * size
+            };
+            let of_tool = if head.is_empty() { inverse[(k, 2)].abs() } else { most };
+            *own = of_part + of_tool * length;
+        }
+        spread
+    }
+
     /// The values of its joints, in machine coordinates of the spindle's nose, at a position of the axes with a tool of this length (mm).
     pub(crate) fn values(&self, machine: &Kinematics, at: &Position, tool_length: f64) -> Values {
         let offset = machine.to_machine(tool_length);

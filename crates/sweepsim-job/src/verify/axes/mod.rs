@@ -4,4 +4,4 @@ mod limits;
 mod travel;
 
 pub(super) use limits::findings;
-pub(super) use travel::describe;
+pub(super) use travel::{describe, travel};

@@ -17,6 +17,21 @@ const LITTLE: f64 = 0.1;
 
 /// The travel of each axis, and a note of turns that do little.
 pub(in crate::verify) fn describe(report: &mut Report, session: Session) {
+    let (axes, note) = travel(session);
+    let judging = &session.request.judging;
+    if !axes.is_empty() && (judging.length_range > 0.0 || judging.offset_range != [0.0; 3]) {
+        let [x, y, z] = judging.offset_range.map(words::length);
+        let length = words::length(judging.length_range);
+        report.notes.push(format!(
+            "the machine is judged for all places of the part within ±({x}, {y}, {z}) mm of its own, and for tools up to {length} mm longer or shorter"
+        ));
+    }
+    report.notes.extend(note);
+    report.axes = (!axes.is_empty()).then_some(axes);
+}
+
+/// How far each axis goes, by letter; and a note.
+pub(in crate::verify) fn travel(session: Session) -> (Vec<AxisTravel>, Option<String>) {
     let folder = session.folder();
     let mut axes: Vec<(AxisTravel, f64)> = Vec::new();
     let (mut flips, mut first) = (0, None);
@@ -45,19 +60,16 @@ pub(in crate::verify) fn describe(report: &mut Report, session: Session) {
             }
         }
     }
-    if let Some(first) = first {
+    let note = first.map(|first| {
         let often = if flips > 1 {
             format!(" ({flips} times, first here)")
         } else {
             String::new()
         };
-        report.notes.push(format!(
-            "{first}: near a direction in which any angle of the axis would do{often}"
-        ));
-    }
+        format!("{first}: near a direction in which any angle of the axis would do{often}")
+    });
     axes.sort_by_key(|(axis, _)| axis.letter);
-    let axes: Vec<AxisTravel> = axes.into_iter().map(|(axis, _)| axis).collect();
-    report.axes = (!axes.is_empty()).then_some(axes);
+    (axes.into_iter().map(|(axis, _)| axis).collect(), note)
 }
 
 /// Widens the travel of an axis to a value.

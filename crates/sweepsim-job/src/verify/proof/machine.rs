@@ -6,7 +6,9 @@
 
 use super::{LISTED, Proof, Proven};
 use crate::base::{JobError, words};
+use crate::session::Session;
 use crate::show::covered;
+use crate::verify::axes;
 use crate::verify::texts::{ProgramTexts, name_of};
 use crate::verify::work;
 use nalgebra::{Unit, Vector3};
@@ -15,7 +17,7 @@ use sweepsim_dexel::{Frame, Stock};
 use sweepsim_formats::{
     Job, JobPath, Measure, OnMachine, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness,
 };
-use sweepsim_machine::{Body, Contact, Convex, Course, Limits, Outcome, contacts};
+use sweepsim_machine::{Body, Contact, Convex, Course, Limits, Outcome, Values, contacts};
 use sweepsim_motion::Tool;
 
 /// The most distances that are computed for a pair of bodies on a path: so many, and so many for each move.
@@ -32,10 +34,21 @@ pub(super) fn apart(proof: &Proof, texts: &mut ProgramTexts) -> Result<Option<Pr
             Some((number, path, on))
         })
     };
-    let Some(limit) = with_bodies().map(|(.., on)| clearance(on)).reduce(f64::max) else {
+    let judging = &proof.session.request.judging;
+    let range = Range {
+        offset: judging.offset_range,
+        length: judging.length_range,
+    };
+    let limit = with_bodies().map(|(.., on)| clearance(on)).reduce(f64::max);
+    let mut machines = job.paths.iter().filter_map(|path| path.on_machine.as_ref());
+    let first = machines.next().filter(|_| limit.is_some() || range.is_some());
+    let Some(first) = first else {
         return Ok(None);
     };
-    let mut all = Seen::new(limit);
+    let mut all = Seen::new(limit.unwrap_or_default());
+    if range.is_some() {
+        all.narrow = range.narrow(proof.session, first);
+    }
     for (number, path, on) in with_bodies() {
         if proof.session.monitor.cancelled() {
             return Err(JobError::Cancelled);
@@ -43,20 +56,65 @@ pub(super) fn apart(proof: &Proof, texts: &mut ProgramTexts) -> Result<Option<Pr
         let crowd = Crowd::new(job, path, on);
         let mut limits = Limits::new(clearance(on));
         limits.tests = TESTS + TESTS_OF_MOVE * on.course.moves();
-        let found = contacts(
-            on.course.chain().linkage(),
-            &crowd.bodies,
-            &crowd.pairs,
-            &on.course,
-            &limits,
-        );
+        limits.slack = range.spread(on);
+        let mut found = Vec::with_capacity(crowd.pairs.len());
+        for own in crowd
+            .pairs
+            .chunk_by(|a, b| crowd.beside(a.1, &range) == crowd.beside(b.1, &range))
+        {
+            let beside = own.first().map_or(0.0, |pair| crowd.beside(pair.1, &range));
+            limits.clearance = clearance(on) + beside;
+            let linkage = on.course.chain().linkage();
+            found.extend(contacts(linkage, &crowd.bodies, own, &on.course, &limits));
+        }
         for (&(a, b), outcome) in crowd.pairs.iter().zip(found) {
             let names = [a, b].map(|body| crowd.bodies[body].name.as_str());
-            let is_sure = ![a, b].iter().any(|body| crowd.loose.contains(body));
+            let is_known = ![a, b].iter().any(|body| crowd.loose.contains(body));
+            // With a range, bodies may be too near at some place of the part only, if they don't touch at this one.
+            let touches = matches!(&outcome, Outcome::Contact(contact) if contact.distance == 0.0);
+            let is_sure = is_known && (touches || !range.is_some());
             all.add(job, texts, (number, names), is_sure, &outcome);
         }
     }
     Ok(Some(all.said()))
+}
+
+/// How far the part may be from its place, and how much longer or shorter a tool.
+struct Range {
+    offset: [f64; 3],
+    length: f64,
+}
+
+impl Range {
+    fn is_some(&self) -> bool {
+        self.length > 0.0 || self.offset.iter().any(|way| *way > 0.0)
+    }
+
+    /// How far joints may be from their course.
+    fn spread(&self, on: &OnMachine) -> Values {
+        on.course.chain().spread(on.course.machine(), self.offset, self.length)
+    }
+
+    /// Axes that have not enough room to their limits.
+    fn narrow(&self, session: Session, on: &OnMachine) -> Vec<String> {
+        let spread = self.spread(on);
+        let needed = |letter: char| {
+            let joint = on.course.chain().letters().iter().position(|own| *own == letter);
+            joint.map_or(0.0, |joint| spread[joint])
+        };
+        let (axes, _) = axes::travel(session);
+        let narrow = axes.iter().filter_map(|axis| {
+            let room = axis.room.filter(|room| *room < needed(axis.letter))?;
+            let place = axis.file.as_ref().zip(axis.line);
+            let place = place.map_or_else(String::new, |(file, line)| format!(" at {file}:{line}"));
+            let [room, needed] = [room, needed(axis.letter)].map(words::length);
+            Some(format!(
+                "{} has {room} mm to its limit{place}, and may need {needed} mm",
+                axis.letter
+            ))
+        });
+        narrow.collect()
+    }
 }
 
 /// All bodies during a path, and the pairs of them that must stay apart.
@@ -65,6 +123,8 @@ struct Crowd {
     pairs: Vec<(usize, usize)>,
     /// Bodies that are known only by what they are within.
     loose: BTreeSet<usize>,
+    /// The numbers of what is on the table; before it are the machine's bodies, after it what the spindle holds.
+    table: std::ops::Range<usize>,
 }
 
 impl Crowd {
@@ -132,8 +192,23 @@ impl Crowd {
                 }
             }
         }
-        debug_assert!(table.end <= bodies.len());
-        Self { bodies, pairs, loose }
+        Self {
+            bodies,
+            pairs,
+            loose,
+            table,
+        }
+    }
+
+    /// How far a body may be beside its place on its link.
+    fn beside(&self, body: usize, range: &Range) -> f64 {
+        if self.table.contains(&body) {
+            Vector3::from(range.offset).norm()
+        } else if body >= self.table.end {
+            range.length
+        } else {
+            0.0
+        }
     }
 }
 
@@ -204,6 +279,8 @@ struct Seen {
     least: f64,
     nearest: f64,
     unsure: BTreeSet<String>,
+    /// What else keeps it from holding.
+    narrow: Vec<String>,
     findings: Vec<ReportedFinding>,
 }
 
@@ -216,6 +293,7 @@ impl Seen {
             least: f64::INFINITY,
             nearest: f64::INFINITY,
             unsure: BTreeSet::new(),
+            narrow: Vec::new(),
             findings: Vec::new(),
         }
     }
@@ -301,17 +379,20 @@ impl Seen {
             least,
             nearest,
             unsure,
+            narrow,
             findings,
         } = self;
         let least = if least.is_finite() { least } else { f64::MAX };
         (statement.state, statement.enclosure) = match (findings.is_empty(), statement.open_count) {
             (false, _) => (StatementState::Refuted, [0.0, nearest]),
-            (true, 0) => (StatementState::Proven, [least, f64::MAX]),
+            (true, 0) if narrow.is_empty() => (StatementState::Proven, [least, f64::MAX]),
             (true, _) => (StatementState::Open, [0.0, f64::MAX]),
         };
         if statement.state == StatementState::Open {
             let pairs: Vec<String> = unsure.into_iter().collect();
-            statement.reason = Some(format!("not known of {}", pairs.join(", ")));
+            let pairs = (!pairs.is_empty()).then(|| format!("not known of {}", pairs.join(", ")));
+            let all: Vec<String> = pairs.into_iter().chain(narrow).collect();
+            statement.reason = Some(all.join("; "));
         }
         Proven::of(statement, findings, Vec::new())
     }
