@@ -3,5 +3,6 @@
 mod certificates;
 mod ci;
 mod memory;
+mod registers;
 mod scope;
 mod walls;

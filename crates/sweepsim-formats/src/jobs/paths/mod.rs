@@ -1,5 +1,6 @@
 //! The paths of a job: poses in the job itself, or a file whose extension determines its format.
 
+mod as_wear;
 mod columns;
 mod course;
 mod entry;
@@ -8,6 +9,7 @@ mod program;
 mod section;
 mod spline_motion;
 
+pub use as_wear::AsWear;
 pub use columns::{Flags, Origins, Seconds};
 
 use std::path::{Path as FilePath, PathBuf};
@@ -71,6 +73,8 @@ pub struct JobPath {
     pub calls: Arc<[Call]>,
     /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
+    /// The same path as it is if assumed registers of diameters hold the wear of their tools, if it then differs.
+    pub as_wear: Option<Box<AsWear>>,
 }
 
 /// Where a pose of a program comes from.
