@@ -102,7 +102,10 @@ impl Reading {
                 )
             }
             None if self.is_right() => format!("no move goes more than {} mm below the target", self.limit),
-            None => format!("it is not known whether a move goes more than {} mm below the target", self.limit),
+            None => format!(
+                "it is not known whether a move goes more than {} mm below the target",
+                self.limit
+            ),
         }
     }
 }
@@ -146,7 +149,9 @@ fn reading(session: Session, target: &Target, own: &[&JobPath], others: &[&JobPa
 fn differing(path: &JobPath, other: &JobPath) -> Vec<(usize, Path)> {
     let known: HashSet<u64> = keys(&other.path).collect();
     let own = keys(&path.path).enumerate();
-    let new: Vec<usize> = own.filter_map(|(k, key)| (!known.contains(&key)).then_some(k)).collect();
+    let new: Vec<usize> = own
+        .filter_map(|(k, key)| (!known.contains(&key)).then_some(k))
+        .collect();
     let runs = new.chunk_by(|a, b| a + 1 == *b);
     runs.map(|run| (run[0], path.path.part(run[0]..run[run.len() - 1] + 1)))
         .collect()
@@ -171,7 +176,11 @@ fn lines(places: impl Iterator<Item = (String, usize)>, main: &str) -> Vec<Strin
         .map(|run| {
             let (file, first) = &run[0];
             let last = run[run.len() - 1].1;
-            let file = if file == main { String::new() } else { format!(" of {file}") };
+            let file = if file == main {
+                String::new()
+            } else {
+                format!(" of {file}")
+            };
             if last > *first {
                 format!("{first} to {last}{file}")
             } else {

@@ -1,5 +1,6 @@
 //! Cycles that have been defined: the cycle that is called, and what cycles on contours share.
 
+use super::cycles::Pattern;
 use super::line::Line;
 use super::values::Parameters;
 use crate::drive::{Cycle, Pocket};
@@ -11,6 +12,8 @@ pub(super) struct Cycles {
     pub(super) cycle: Option<Cycle>,
     /// Its number and its block, which patterns take with other levels.
     pub(super) block: Option<(u32, Line)>,
+    /// Where `CYCL CALL PAT` calls it.
+    pub(super) pattern: Pattern,
     pub(super) contours: ContourData,
 }
 

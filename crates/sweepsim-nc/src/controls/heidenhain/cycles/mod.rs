@@ -3,4 +3,7 @@
 mod contours;
 mod define;
 mod holes;
+mod patterns;
 mod shapes;
+
+pub(super) use patterns::Pattern;
