@@ -8,7 +8,6 @@ mod findings;
 mod fixtures;
 mod program;
 mod proof;
-mod registers;
 mod scope;
 pub(crate) mod targets;
 mod texts;
@@ -197,7 +196,7 @@ impl Before {
             _ => None,
         };
         let certified = findings::describe(report, session, &done, found.as_ref())?;
-        registers::compare(session, report)?;
+        proof::compare_registers(session, report)?;
         report.scope = Some(scope::scope(session, sets));
         let along_z = looks.into_iter().next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;

@@ -7,7 +7,8 @@ use crate::text::error::{Located, NcProblem};
 /// The most blocks of a contour.
 const MOST_BLOCKS: usize = 100_000;
 
-/// The course of the moves of some blocks in a plane. `enter` goes to the first of them, `goes_on` tells whether there are more, and `leave` goes back.
+/// The course of the moves of some blocks in a plane. `enter` goes to the first of them, `goes_on` tells whether there
+/// are more, and `leave` goes back.
 pub(super) fn course<R: Running>(
     running: &mut R,
     plane: ArcPlane,

@@ -152,7 +152,8 @@ pub(crate) fn g_in(value: f64, block: &Block) -> Code {
         Code::EndCurve if given("P") => Code::Ignored("smoothness (G5.3 P) changes no programmed point: ignored"),
         Code::SplineOrMode if given("XY") => Code::Motion(MotionMode::Curve { cubic: true }),
         Code::SplineOrMode if given("ZABCIJKQ") || !given("P") => Code::Refused("splines without X and Y are"),
-        // P1 and P2 are Mitsubishi's and Mazak's high-speed modes. P10001 and on call high-speed cycles, which move axes.
+        // P1 and P2 are Mitsubishi's and Mazak's high-speed modes. P10001 and on call high-speed cycles, which move
+        // axes.
         Code::SplineOrMode => match block.get('P') {
             Some(0.0 | 1.0 | 2.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
             _ => Code::Refused("high-speed modes other than P0, P1, P2 and P10000 are"),

@@ -184,18 +184,12 @@ impl Kinematics {
                 "three numbers",
             )?;
         }
-        if let Some(deviation) = description.corner_deviation {
-            let good = deviation > 0.0 && deviation.is_finite();
-            check(|| "corner_deviation".into(), deviation, good, "a positive number")?;
-        }
-        let smoothing = description.smoothing;
-        let good = smoothing >= 0.0 && smoothing.is_finite();
-        check(
-            || "smoothing".into(),
-            smoothing,
-            good,
-            "0 or a positive number of seconds",
-        )?;
+        let good = |value: f64| value > 0.0 && value.is_finite();
+        let deviation = description.corner_deviation.unwrap_or(1.0);
+        check(|| "corner_deviation".into(), deviation, good(deviation), "positive")?;
+        let (smoothing, expected) = (description.smoothing, "positive, or 0");
+        let averages = smoothing == 0.0 || good(smoothing);
+        check(|| "smoothing".into(), smoothing, averages, expected)?;
         let zero = Vector3::from(description.part_zero);
         let table: Vec<Joint> = description
             .table

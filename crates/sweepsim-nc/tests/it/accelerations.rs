@@ -6,14 +6,14 @@ use std::fmt::Write;
 use proptest::prelude::*;
 use sweepsim_nc::{AxisLaw, CORNER_DEVIATION, Controller, Machine, Program, ReadOptions, gcode, siemens};
 
-fn options(machine: &str) -> ReadOptions {
+pub fn options(machine: &str) -> ReadOptions {
     let mut options = ReadOptions::default();
     options.machine = Machine::read(machine).unwrap();
     options
 }
 
 /// Axes with these accelerations; more fields of the machine.
-fn mill(accelerations: [f64; 3], more: &str) -> ReadOptions {
+pub fn mill(accelerations: [f64; 3], more: &str) -> ReadOptions {
     let [x, y, z] = accelerations;
     options(&format!(
         "Machine(name: \"mill\", linear: [(letter: 'X', acceleration: {x:?}), (letter: 'Y', acceleration: {y:?}), (letter: 'Z', acceleration: {z:?})], {more})"
@@ -29,12 +29,12 @@ fn feeds(program: &Program) -> Vec<f64> {
         .collect()
 }
 
-fn times(text: &str, options: &ReadOptions) -> Vec<f64> {
+pub fn times(text: &str, options: &ReadOptions) -> Vec<f64> {
     feeds(&gcode::read(&format!("G21 G90\nG0 X0 Y0 Z0\n{text}"), options).unwrap())
 }
 
 #[track_caller]
-fn near(found: &[f64], expected: &[f64]) {
+pub fn near(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
     for (a, b) in found.iter().zip(expected) {
         assert!((a - b).abs() < 1e-9, "{found:?} {expected:?}");
@@ -126,56 +126,6 @@ fn corners() {
     near(&siemens("G9 G1 X100 F6000\nX200\nX300\n"), &[1.1, 1.05, 1.05]);
     assert!(Machine::read("Machine(name: \"\", corner_deviation: 0)").is_err());
     assert!(Machine::read("Machine(name: \"\", corner_deviation: -1)").is_err());
-}
-
-#[test]
-fn speeds_that_are_averaged_take_longer_where_they_dip() {
-    let [plain, smooth] = ["", "smoothing: 0.08"].map(|more| mill([1000.0; 3], more));
-    // From rest to rest, once; whether in one block or in several.
-    near(&times("G1 X100 F6000\n", &smooth), &[1.1 + 0.08]);
-    near(&times("G1 X50 F6000\nX100\n", &smooth), &[0.55 + 0.08, 0.55]);
-    // Up or down from one feed to another is no dip.
-    let ramps = "G1 X100 F6000\nX200 F3000\nX300 F6000\n";
-    let (without, with) = (times(ramps, &plain), times(ramps, &smooth));
-    near(&with, &[without[0] + 0.08, without[1], without[2]]);
-    // A corner is: the larger, the slower it is.
-    let corner = "G1 X100 F6000\nX200 Y10\n";
-    let (without, with) = (times(corner, &plain), times(corner, &smooth));
-    let half = 0.5 * 0.1_f64.atan();
-    let speed = (1000.0 * CORNER_DEVIATION * half.cos() / (1.0 - half.cos())).sqrt();
-    // The axes share the acceleration towards the inside of the corner.
-    let bent = with[1] - without[1];
-    assert!((with[0] - without[0] - 0.08).abs() < 1e-12);
-    assert!(
-        (bent - 0.08 * (1.0 - speed / 100.0)).abs() < 1e-3 && bent > 0.005,
-        "{bent} {speed}"
-    );
-    // A rapid is from rest to rest.
-    let rapid = |options: &ReadOptions| {
-        let program = gcode::read("G21\nG0 X0 Y0 Z0\nG0 X100\n", options).unwrap();
-        program.times()[1].seconds.unwrap()
-    };
-    near(&[rapid(&smooth) - rapid(&plain)], &[0.08]);
-    // With an acceleration of its own: 100 mm of X at 100 mm/s.
-    let own = |more: &str| {
-        options(&format!(
-            "Machine(name: \"mill\", linear: [(letter: 'X', speed: 6000, acceleration: 1000{more})])"
-        ))
-    };
-    near(&[rapid(&own(""))], &[1.1]);
-    near(&[rapid(&own(", rapid_acceleration: 500"))], &[1.2]);
-    near(&times("G1 X100 F6000\n", &own(", rapid_acceleration: 500")), &[1.1]);
-    let wrong = Machine::read("Machine(name: \"\", linear: [(letter: 'X', rapid_acceleration: 0)])");
-    assert!(wrong.unwrap_err().to_string().contains("the rapid_acceleration of X"));
-    // Without accelerations there is nothing to average.
-    let bare = options("Machine(name: \"mill\", linear: [(letter: 'X')], smoothing: 0.08)");
-    near(&times("G1 X100 F6000\n", &bare), &[1.0]);
-    for wrong in ["-0.1", "inf", "NaN"] {
-        assert!(
-            Machine::read(&format!("Machine(name: \"\", smoothing: {wrong})")).is_err(),
-            "{wrong}"
-        );
-    }
 }
 
 /// Half a circle of radius 20 by chords, or as an arc: the axes hold √(a r) after the ramps.

@@ -28,6 +28,7 @@ mod programs;
 mod round_trips;
 mod shop_programs;
 mod siemens;
+mod smoothing;
 mod tables;
 mod tilted_turns;
 mod tools;

@@ -203,6 +203,10 @@ fn klartext_as_it_is_written() {
             "3 Q1=0\n4 LBL2\n5 Q1=Q1+1\n6 L X+Q1 Y+0 Z+0 FMAX\n7 FN12: IF +Q1 LT +3 GOTO LBL 2\n",
             [3.0, 0.0, 0.0],
         ),
+        (
+            "3 Q1=1\n4 FN9: IF +Q1 EQU +1 GOTO LBL7\n5 L X+9 Y+0 Z+0 FMAX\n6 LBL 7\n7 L Y+0 Z+0 FMAX\n8 L X+2 FMAX\n",
+            [2.0, 0.0, 0.0],
+        ),
         // Where the tool is, and what the control alone knows.
         (
             "3 L X+7 Y+0 Z+0 FMAX\n4 FN18: SYSREAD Q1 = ID270 NR1 IDX1\n5 L X+Q1 Y+1 FMAX\n",
@@ -307,7 +311,8 @@ fn fixture_offsets_of_fadal() {
     }
 }
 
-/// The heads and ends that posts write for Mazak's EIA, Brother, Hurco and Centroid: each as it is, with nothing assumed that cuts.
+/// The heads and ends that posts write for Mazak's EIA, Brother, Hurco and Centroid: each as it is, with nothing
+/// assumed that cuts.
 #[test]
 fn heads_of_other_controls() {
     let cut = "G1 Z-1. F100.\nX10.\nG0 Z5.\n";

@@ -28,8 +28,8 @@ impl AssumedSizes {
         (!own.is_empty()).then_some(Self(own))
     }
 
-    /// Gives each path of the program its other reading, where it differs. `tool`: the job's tool for the whole program.
-    /// `read` reads the program again.
+    /// Gives each path of the program its other reading, where it differs. `tool`: the job's tool for the whole
+    /// program. `read` reads the program again.
     pub fn compare<E>(
         &self,
         paths: &mut [JobPath],

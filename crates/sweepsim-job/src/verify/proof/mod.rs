@@ -3,6 +3,9 @@
 mod bodies;
 mod excess;
 mod process;
+mod registers;
+
+pub(super) use registers::compare as compare_registers;
 
 use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};

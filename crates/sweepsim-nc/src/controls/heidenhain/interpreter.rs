@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::contours::free::FreeContour;
-use super::cycles::Pattern;
 use super::frames::Frames;
 use super::line::{self, Line};
 use super::routine::Routine;
-use super::state::Cycles;
+use super::state::{Cycles, FreeContour, Pattern};
 use super::values::{Jump, Parameters};
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{ProgramPlace, Sense, Track};

@@ -57,7 +57,8 @@ impl Reader {
         self.check_spare_words(block)
     }
 
-    /// The work offset that `E1` means on Fadal's controls: a whole number in a block that feeds nowhere. Elsewhere E is what is extruded, or an exponent.
+    /// The work offset that `E1` means on Fadal's controls: a whole number in a block that feeds nowhere. Elsewhere E
+    /// is what is extruded, or an exponent.
     pub(super) fn fixture_offset(&self, block: &Block) -> Option<WorkOffset> {
         let words = block.words();
         let at = words.iter().position(|word| word.letter == 'E')?;

@@ -26,8 +26,9 @@ pub(super) struct Stretch {
 /// it must brake to, and one along it for what it can reach. That is the look-ahead of Grbl's planner, over the whole path. Stretches are kept from where it
 /// may still have to brake for what follows; all but the last of them are packed, and looked at part by part.
 ///
-/// A control that averages speeds over a time `T` comes down to a speed `u` between stretches of larger speeds, up to `P` on the slower of them, only if it stays at `u` for `T`: that takes
-/// `T (1 − u/P)` longer, and `T` from rest to rest. It is counted in the stretch that begins there.
+/// A control that averages speeds over a time `T` comes down to a speed `u` between stretches of larger speeds, up to
+/// `P` on the slower of them, only if it stays at `u` for `T`: that takes `T (1 − u/P)` longer, and `T` from rest to
+/// rest. It is counted in the stretch that begins there.
 #[derive(Debug, Default)]
 pub(super) struct Profile {
     /// Over how many seconds speeds are averaged.

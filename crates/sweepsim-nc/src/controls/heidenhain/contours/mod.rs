@@ -3,4 +3,4 @@
 mod approach;
 mod arcs;
 mod compensation;
-pub(super) mod free;
+mod free;

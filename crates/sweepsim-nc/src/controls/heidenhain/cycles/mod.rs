@@ -5,5 +5,3 @@ mod define;
 mod holes;
 mod patterns;
 mod shapes;
-
-pub(super) use patterns::Pattern;

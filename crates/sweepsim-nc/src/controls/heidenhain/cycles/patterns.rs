@@ -1,31 +1,17 @@
-//! Places where a cycle is called: the patterns of cycles 220 and 221, `PATTERN DEF` with `CYCL CALL PAT`, and `CYCL CALL POS`.
+//! Places where a cycle is called: the patterns of cycles 220 and 221, `PATTERN DEF` with `CYCL CALL PAT`, and `CYCL
+//! CALL POS`.
 //!
-//! Source: *TNC 640, Cycle Programming* (892903), 2.3 Pattern definition, 2.2 Calling cycles. The coordinate of a place along the tool is added to the surface that the cycle has.
+//! Source: *TNC 640, Cycle Programming* (892903), 2.3 Pattern definition, 2.2 Calling cycles. The coordinate of a place
+//! along the tool is added to the surface that the cycle has.
 
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::state::{CyclePlace, Pattern};
 use crate::drive::Cycle;
 use crate::text::error::{Located, NcProblem};
 
 /// The most places of a pattern.
 const MOST_PLACES: u32 = 10_000;
-
-/// Where a cycle is called: in the plane, and by how much its surface is above that of its definition.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::controls::heidenhain) struct CyclePlace {
-    at: [f64; 2],
-    above: f64,
-}
-
-/// What `PATTERN DEF` or `SEL PATTERN` names.
-#[derive(Clone, Debug, Default)]
-pub(in crate::controls::heidenhain) enum Pattern {
-    #[default]
-    None,
-    Places(Vec<CyclePlace>),
-    /// A table of points, by its name.
-    Table(String),
-}
 
 /// `point` of a frame that begins at a place, with its axes at these angles.
 fn placed([x, y]: [f64; 2], [first, second]: [f64; 2], [a, b]: [f64; 2]) -> [f64; 2] {

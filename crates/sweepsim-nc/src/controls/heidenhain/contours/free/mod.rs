@@ -1,43 +1,25 @@
-//! Free contours (FK): `FL FLT FC FCT FPOL FSELECT`. What a drawing says of lines and arcs determines where they begin and end.
+//! Free contours (FK): `FL FLT FC FCT FPOL FSELECT`. What a drawing says of lines and arcs determines where they begin
+//! and end.
 //!
-//! Source: *iTNC 530, User's Manual* (340 49x-03), 6.6 Path contours, FK free contour programming. Its pages name the data; in which order the control numbers the solutions among which `FSELECT` chooses
-//! they do not say.
+//! Source: *iTNC 530, User's Manual* (340 49x-03), 6.6 Path contours, FK free contour programming. Its pages name the
+//! data; in which order the control numbers the solutions among which `FSELECT` chooses they do not say.
 
-mod carrier;
-mod element;
-mod search;
 mod words;
 
 use std::collections::VecDeque;
-use std::ops::Range;
 
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
 use crate::controls::heidenhain::moves::MoveWords;
 use crate::drive::CircularArc;
+use crate::drive::free::{Element, Flat, Solved, Unsolved, contour, unit};
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
-pub(in crate::controls::heidenhain) use carrier::Flat;
-use element::{Element, Solved};
-use search::{Unsolved, contour};
 
 /// The most elements of a free contour.
 const MOST_ELEMENTS: usize = 1000;
 /// The most steps of all searches of a program: loops search again.
 const MOST_STEPS: usize = 2_000_000;
-
-/// What free contours share from block to block.
-#[derive(Default)]
-pub(in crate::controls::heidenhain) struct FreeContour {
-    /// The pole of FPOL.
-    pole: Option<Flat>,
-    /// The elements that are still to be made, with their lines.
-    solved: VecDeque<(usize, Solved)>,
-    /// The lines of a contour that is wrong: what is said of its first one is enough.
-    wrong: Range<usize>,
-    /// The steps of all searches.
-    steps: usize,
-}
 
 /// Whether a block is an element of a free contour.
 pub(in crate::controls::heidenhain) fn is_free(word: &str) -> bool {
@@ -76,10 +58,7 @@ impl Reader<'_> {
         let [u, v, _] = self.modes.plane;
         let place = self.track.place.line;
         if self.free.solved.front().is_none_or(|(line, _)| *line != place) {
-            let way = self
-                .track
-                .last_direction()
-                .and_then(|way| carrier::unit([way[u], way[v]]));
+            let way = self.track.last_direction().and_then(|way| unit([way[u], way[v]]));
             self.free.solved = self.solve(line, [here[u], here[v]], way)?;
         }
         let Some((_, element)) = self.free.solved.pop_front() else {

@@ -1,9 +1,8 @@
 //! The words of the blocks of a free contour.
 
-use super::carrier::Flat;
-use super::element::{Element, Value};
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
+use crate::drive::free::{Element, Flat, Value};
 use crate::text::error::{Located, NcProblem};
 
 /// The names of words, longer ones before those that they begin with.

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-pub(in crate::controls::heidenhain) type Flat = [f64; 2];
+pub(crate) type Flat = [f64; 2];
 
-/// Numbers of programs are rounded to 0.001 mm: points, directions and tangents that agree within some of these roundings are the same.
+/// Numbers of programs are rounded to 0.001 mm: points, directions and tangents that agree within some of these
+/// roundings are the same.
 pub(super) const SAME: f64 = 2e-3;
 /// Nothing is shorter.
 const SHORTEST: f64 = 1e-6;
@@ -41,7 +42,7 @@ pub(super) fn distance(a: Flat, b: Flat) -> f64 {
     x.hypot(y)
 }
 
-pub(super) fn unit(v: Flat) -> Option<Flat> {
+pub(crate) fn unit(v: Flat) -> Option<Flat> {
     let size = v[0].hypot(v[1]);
     (size > SHORTEST).then(|| v.map(|c| c / size))
 }
@@ -148,7 +149,8 @@ impl Carrier {
         }
     }
 
-    /// Where the centres of circles of a radius are that touch it and go on from it, or go over to it, in the same direction.
+    /// Where the centres of circles of a radius are that touch it and go on from it, or go over to it, in the same
+    /// direction.
     pub fn centres(&self, radius: f64) -> Self {
         match *self {
             Self::Line { at, way } => Self::Line {
@@ -176,7 +178,8 @@ fn chord(foot: Flat, off: f64, radius: f64, way: Flat) -> Vec<Flat> {
     vec![along(foot, -half, way), along(foot, half, way)]
 }
 
-/// A point beside which a line passes, to the right of it by so much: 0 for a point of the line, the signed radius for a circle that it touches.
+/// A point beside which a line passes, to the right of it by so much: 0 for a point of the line, the signed radius for
+/// a circle that it touches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Support(pub Flat, pub f64);
 

@@ -3,10 +3,10 @@
 //!
 //! How deep cutters go below the target is enclosed for both readings, along the moves in which these differ.
 
-use super::asked::{self, limits};
-use super::work;
 use crate::base::JobError;
 use crate::session::Session;
+use crate::verify::asked::{self, limits};
+use crate::verify::work;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use sweepsim::motion::Path;
@@ -17,7 +17,7 @@ use sweepsim_proof::{Convex, Cutter, Limits, Target, cover, deepest};
 type Registers<'a> = (u32, &'a [(String, usize)]);
 
 /// Compares both readings of all registers that were assumed, and warns where only one of them gouges.
-pub(super) fn compare(session: Session, report: &mut Report) -> Result<(), JobError> {
+pub(in crate::verify) fn compare(session: Session, report: &mut Report) -> Result<(), JobError> {
     let job = session.job;
     let mut all: BTreeMap<Registers, Vec<&JobPath>> = BTreeMap::new();
     for path in &job.paths {

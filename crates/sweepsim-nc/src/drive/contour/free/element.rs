@@ -6,7 +6,7 @@ use super::carrier::{Carrier, Flat, SAME, Support, along, distance, dot, heading
 
 /// A number that may count from a place of the contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Value {
+pub(crate) struct Value {
     pub value: f64,
     /// From the end of the element before, or of that of another block.
     pub relative: bool,
@@ -15,7 +15,7 @@ pub(super) struct Value {
 
 /// What a block says of its element; lengths in mm, angles in radians.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Element {
+pub(crate) struct Element {
     /// The number of the block in its program, if it has one.
     pub number: Option<u32>,
     pub line: usize,
@@ -57,7 +57,7 @@ impl Element {
 
 /// An element whose ends are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::controls::heidenhain) struct Solved {
+pub(crate) struct Solved {
     pub(super) carrier: Carrier,
     pub(super) start: Flat,
     pub end: Flat,
@@ -185,7 +185,8 @@ impl<'a> Given<'a> {
         towards.is_none_or(|way| distance(carrier.direction(start), way) < SAME) && self.element.near.iter().all(on)
     }
 
-    /// The carriers that are possible; `None` if they are not determined. `next`: what the element goes over to tangentially.
+    /// The carriers that are possible; `None` if they are not determined. `next`: what the element goes over to
+    /// tangentially.
     pub fn carriers(&self, before: &Before, next: Option<&Carrier>) -> Option<Vec<Carrier>> {
         if self.element.is_arc {
             self.circles(before, next)

@@ -13,14 +13,14 @@ const MOST_LOOKED_AT: usize = 64;
 const CHORDS: usize = 24;
 
 /// Why no contour was found: the number of the element, and whether it is not determined, rather than impossible.
-pub(super) struct Unsolved {
+pub(crate) struct Unsolved {
     pub number: usize,
     pub is_open: bool,
     pub steps: usize,
 }
 
 /// The contour that is taken of those that fit, and how many they are.
-pub(super) struct Found {
+pub(crate) struct Found {
     pub contour: Vec<Solved>,
     pub crosses_itself: bool,
     pub count: usize,
@@ -35,7 +35,7 @@ impl Found {
 }
 
 /// The shortest contour that fits and does not cross itself; if all do, the shortest.
-pub(super) fn contour(elements: &[Element], start: Flat, way: Option<Flat>) -> Result<Found, Unsolved> {
+pub(crate) fn contour(elements: &[Element], start: Flat, way: Option<Flat>) -> Result<Found, Unsolved> {
     let mut search = Search {
         elements,
         done: Vec::new(),
