@@ -61,8 +61,8 @@ pub use dexels::{
 pub use drafts::{Draft, DraftOptions, DraftStock, Guess, draft, draft_of};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
 pub use jobs::{
-    Flags, Job, JobPath, LimitRegion, Limits, OnMachine, Origin, Origins, Provided, RegionPlace, Seconds, Setup,
-    Target, Units,
+    AsWear, Flags, Job, JobPath, LimitRegion, Limits, OnMachine, Origin, Origins, Provided, RegionPlace, Seconds,
+    Setup, Target, Units,
 };
 pub use meshes::{
     Colour, MeshFormat, STEP_CHORD, STEP_SHARE, STEP_THREAD, StepBody, StepFace, StepPart, parse_step, parse_stl,

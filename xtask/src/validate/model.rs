@@ -30,8 +30,12 @@ pub const WAITS: [(&str, bool); 8] = [
 pub struct Fit {
     /// Of each axis, in mm/s².
     pub acceleration: f64,
+    /// The same in rapids.
+    pub rapid_acceleration: f64,
     /// How tightly corners are taken, in mm.
     pub corner: f64,
+    /// Over how many seconds the control averages speeds.
+    pub smoothing: f64,
     /// Seconds of what is no move between places that the program gives: see [`WAITS`].
     pub waits: [f64; WAITS.len()],
 }
@@ -40,15 +44,15 @@ impl Fit {
     /// The machine's description, at a rapid override.
     pub fn machine(&self, rapid: f64) -> String {
         let mut text = format!(
-            "Machine(name: \"Hurco\", corner_deviation: {}, rapid: Straight, linear: [",
-            self.corner
+            "Machine(name: \"Hurco\", corner_deviation: {}, smoothing: {}, rapid: Straight, linear: [",
+            self.corner, self.smoothing
         );
         for letter in ['X', 'Y', 'Z'] {
             let speed = RAPID * rapid;
             let _ = write!(
                 text,
-                "(letter: '{letter}', speed: {speed}, acceleration: {}), ",
-                self.acceleration
+                "(letter: '{letter}', speed: {speed}, acceleration: {}, rapid_acceleration: {}), ",
+                self.acceleration, self.rapid_acceleration
             );
         }
         text + "])"

@@ -16,6 +16,8 @@ const LOGS: [(&str, &str, &str); 4] = [
 ];
 /// Moves are fitted over so many seconds at once: twenty times as long as the log is uncertain.
 const WINDOW: f64 = 20.0 * POLLED;
+/// Where fits start: accelerations in mm/s², corners in mm, smoothing in s.
+const STARTS: [(f64, f64, f64); 3] = [(1000.0, 0.01, 0.02), (400.0, 0.003, 0.06), (2000.0, 0.003, 0.1)];
 /// Blocks that are judged one by one last longer, in seconds.
 const LONG: f64 = 1.0;
 
@@ -66,7 +68,9 @@ impl Case {
         let run = Run::read(&folder.join(log), blocks.lines.len())?;
         let start = Fit {
             acceleration: 1e6,
+            rapid_acceleration: 1e6,
             corner: 10.0,
+            smoothing: 0.0,
             waits: [0.0; WAITS.len()],
         };
         let ideal = blocks.moves(&start, &BTreeMap::new(), 1.0)?;
@@ -119,13 +123,35 @@ impl Case {
     }
 }
 
-/// Fits accelerations and corners to the moves, then the waits to what else there is.
+/// The best fit that steps of each of the four lead to.
+fn descended(mut fit: Fit, wrong: &impl Fn(&Fit) -> Result<f64, String>) -> Result<(f64, Fit), String> {
+    let mut least = wrong(&fit)?;
+    for step in [2.0, 1.4, 1.15, 1.05_f64] {
+        let mut better = true;
+        while better {
+            better = false;
+            for (k, factor) in [0, 1, 2, 3].into_iter().flat_map(|k| [(k, step), (k, 1.0 / step)]) {
+                let of = |own: usize| if own == k { factor } else { 1.0 };
+                let other = Fit {
+                    acceleration: (fit.acceleration * of(0)).clamp(10.0, 20_000.0),
+                    corner: (fit.corner * of(1)).clamp(1e-5, 1.0),
+                    smoothing: (fit.smoothing * of(2)).clamp(1e-3, 0.5),
+                    rapid_acceleration: (fit.rapid_acceleration * of(3)).clamp(10.0, 20_000.0),
+                    ..fit
+                };
+                let found = wrong(&other)?;
+                if found < 0.999 * least {
+                    (fit, least, better) = (other, found, true);
+                }
+            }
+        }
+    }
+    println!("fitted to a sum of {least:.1} s: {}", fit.machine(1.0));
+    Ok((least, fit))
+}
+
+/// Fits accelerations, corners and smoothing to the moves, then the waits to what else there is.
 fn fitted(case: &Case) -> Result<Fit, String> {
-    let mut fit = Fit {
-        acceleration: 1000.0,
-        corner: 0.01,
-        waits: [0.0; WAITS.len()],
-    };
     let wrong = |fit: &Fit| -> Result<f64, String> {
         let rows = case.rows(fit)?;
         // Over some seconds, so that polling counts for little, and every short block counts.
@@ -140,24 +166,22 @@ fn fitted(case: &Case) -> Result<Fit, String> {
         }
         Ok(sum)
     };
-    let mut least = wrong(&fit)?;
-    for step in [2.0, 1.4, 1.15, 1.05_f64] {
-        let mut better = true;
-        while better {
-            better = false;
-            for (a, c) in [(step, 1.0), (1.0 / step, 1.0), (1.0, step), (1.0, 1.0 / step)] {
-                let other = Fit {
-                    acceleration: (fit.acceleration * a).clamp(10.0, 20_000.0),
-                    corner: (fit.corner * c).clamp(1e-5, 1.0),
-                    ..fit
-                };
-                let found = wrong(&other)?;
-                if found < 0.999 * least {
-                    (fit, least, better) = (other, found, true);
-                }
-            }
+    // The sum has several valleys.
+    let mut best: Option<(f64, Fit)> = None;
+    for (acceleration, corner, smoothing) in STARTS {
+        let start = Fit {
+            acceleration,
+            rapid_acceleration: 2.0 * acceleration,
+            corner,
+            smoothing,
+            waits: [0.0; WAITS.len()],
+        };
+        let (sum, fit) = descended(start, &wrong)?;
+        if best.as_ref().is_none_or(|(least, _)| sum < *least) {
+            best = Some((sum, fit));
         }
     }
+    let (_, mut fit) = best.ok_or("no start")?;
     let rows = case.rows(&fit)?;
     for kind in 0..fit.waits.len() {
         let own = rows

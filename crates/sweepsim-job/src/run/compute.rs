@@ -113,7 +113,7 @@ pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     report.volume = Some(done.dexels.volume());
     report.setups = report.setups.take().or_else(|| setups(job));
     report.notes.splice(0..0, session.plan.notes());
-    report.warnings = session.plan.warnings();
+    report.warnings.splice(0..0, session.plan.warnings());
     if request.task != Task::Sweep {
         let paths = report.paths.as_ref();
         let removed: Option<Vec<f64>> = paths.map(|paths| paths.iter().map(|path| path.removed).collect());

@@ -196,6 +196,7 @@ impl Before {
             _ => None,
         };
         let certified = findings::describe(report, session, &done, found.as_ref())?;
+        proof::compare_registers(session, report)?;
         report.scope = Some(scope::scope(session, sets));
         axes::describe(report, session);
         let along_z = looks.into_iter().next();

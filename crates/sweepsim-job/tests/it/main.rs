@@ -4,5 +4,6 @@ mod certificates;
 mod ci;
 mod machine;
 mod memory;
+mod registers;
 mod scope;
 mod walls;

@@ -17,6 +17,7 @@ pub use axes::{AxesCourse, AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
+pub(crate) use contour::free;
 pub(crate) use contour::{
     ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, NARROW, ProgramPlace, Stroke,
 };

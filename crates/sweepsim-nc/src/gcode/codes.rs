@@ -117,6 +117,8 @@ pub(crate) enum Code {
     ReturnLevel,
     /// Okuma's G116 T.
     ChangeTool,
+    /// Brother's G100: with a rapid in the same block.
+    ChangeToolOnTheWay,
     /// G31, G38.2 and their kin: a move up to where the part is.
     Probe,
     /// G5: a spline, or a high-speed mode.
@@ -144,12 +146,17 @@ pub(crate) fn g_in(value: f64, block: &Block) -> Code {
     const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
     let given = |letters: &str| letters.chars().any(|letter| block.has(letter));
     match g(value) {
+        // Brother changes the tool on the way.
+        _ if value == 100.0 && given("T") => Code::ChangeToolOnTheWay,
+        // Hurco's quality of surfaces.
+        Code::EndCurve if given("P") => Code::Ignored("smoothness (G5.3 P) changes no programmed point: ignored"),
         Code::SplineOrMode if given("XY") => Code::Motion(MotionMode::Curve { cubic: true }),
         Code::SplineOrMode if given("ZABCIJKQ") || !given("P") => Code::Refused("splines without X and Y are"),
-        // P10001 and on call high-speed cycles, which move axes.
+        // P1 and P2 are Mitsubishi's and Mazak's high-speed modes. P10001 and on call high-speed cycles, which move
+        // axes.
         Code::SplineOrMode => match block.get('P') {
-            Some(0.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
-            _ => Code::Refused("high-speed modes other than P0 and P10000 are"),
+            Some(0.0 | 1.0 | 2.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
+            _ => Code::Refused("high-speed modes other than P0, P1, P2 and P10000 are"),
         },
         Code::SplineOrContouring if given("XY") => Code::Motion(MotionMode::Curve { cubic: false }),
         Code::SplineOrContouring if given("ZABCIJK") || !given("Q") => Code::Refused("splines without X and Y are"),

@@ -9,8 +9,12 @@ use crate::text::error::NcProblem;
 pub(crate) const EXTENDED: WorkOffset = 100;
 /// Where those of Okuma begin: `G15 H1`.
 pub(crate) const OKUMA: WorkOffset = EXTENDED + 1000;
+/// Where those of Fadal begin: `E1`.
+pub(crate) const FADAL: WorkOffset = OKUMA + 1000;
+/// The last of Fadal's.
+pub(crate) const MOST_OF_FADAL: u32 = 48;
 /// Above all of them.
-const MOST: WorkOffset = OKUMA + 1000;
+const MOST: WorkOffset = FADAL + MOST_OF_FADAL + 1;
 
 /// The work offsets, and the shifts on top of them. Millimetres.
 #[derive(Clone, Debug)]
@@ -41,6 +45,7 @@ pub(crate) fn name(index: WorkOffset) -> String {
     match index {
         0..=5 => format!("G{}", 54 + index),
         6..=8 => format!("G59.{}", index - 5),
+        FADAL.. => format!("E{}", index - FADAL),
         OKUMA.. => format!("G15 H{}", index - OKUMA),
         _ => format!("G54.1 P{}", index.saturating_sub(EXTENDED)),
     }

@@ -42,6 +42,10 @@ pub struct MachineDescription {
     /// [`Program::times`](crate::Program::times) counts it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corner_deviation: Option<f64>,
+    /// Over how many seconds the control averages speeds, so that accelerations do not jump; 0 if it does not. Only
+    /// [`Program::times`](crate::Program::times) counts it, where any axis has an acceleration.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub smoothing: f64,
     /// Whether programs are under tip control from the start.
     #[serde(default)]
     pub tip_control: bool,
@@ -105,6 +109,12 @@ impl MachineDescription {
     }
 }
 
+/// What is 0 is not written.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// A linear axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -126,6 +136,9 @@ pub struct LinearAxis {
     /// The largest acceleration, in mm/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<f64>,
+    /// That of rapids, in mm/s², where it is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rapid_acceleration: Option<f64>,
     /// Where it stands at the start, in machine coordinates.
     #[serde(default)]
     pub start: f64,
@@ -167,6 +180,7 @@ impl LinearAxis {
             limits: None,
             speed: None,
             acceleration: None,
+            rapid_acceleration: None,
             start: 0.0,
         }
     }

@@ -85,7 +85,7 @@ fn direction(what: impl Fn() -> String, vector: [f64; 3]) -> Result<Unit<Vector3
 }
 
 /// The numbers that both kinds of axes have.
-fn check_axis(letter: char, limits: Option<[f64; 2]>, rates: [Option<f64>; 2], start: f64) -> Result<(), MachineError> {
+fn check_axis(letter: char, limits: Option<[f64; 2]>, rates: [Option<f64>; 3], start: f64) -> Result<(), MachineError> {
     if let Some([least, largest]) = limits {
         let ordered = least < largest && least.is_finite() && largest.is_finite();
         if !ordered {
@@ -96,7 +96,7 @@ fn check_axis(letter: char, limits: Option<[f64; 2]>, rates: [Option<f64>; 2], s
             });
         }
     }
-    for (rate, name) in rates.into_iter().zip(["speed", "acceleration"]) {
+    for (rate, name) in rates.into_iter().zip(["speed", "acceleration", "rapid_acceleration"]) {
         if let Some(rate) = rate {
             let good = rate > 0.0 && rate.is_finite();
             check(|| format!("the {name} of {letter}"), rate, good, "a positive number")?;
@@ -135,7 +135,8 @@ impl Kinematics {
                 });
             };
             once(axis.letter)?;
-            check_axis(axis.letter, axis.limits, [axis.speed, axis.acceleration], axis.start)?;
+            let rates = [axis.speed, axis.acceleration, axis.rapid_acceleration];
+            check_axis(axis.letter, axis.limits, rates, axis.start)?;
             if let Some(vector) = axis.direction {
                 let unit = direction(|| format!("the direction of {}", axis.letter), vector)?;
                 directions.set_column(k, &unit);
@@ -159,7 +160,12 @@ impl Kinematics {
                 });
             };
             once(axis.letter)?;
-            check_axis(axis.letter, axis.limits, [axis.speed, axis.acceleration], axis.start)?;
+            check_axis(
+                axis.letter,
+                axis.limits,
+                [axis.speed, axis.acceleration, None],
+                axis.start,
+            )?;
             for coordinate in axis.pivot {
                 let what = || format!("the pivot of {}", axis.letter);
                 check(what, coordinate, coordinate.is_finite(), "three numbers")?;
@@ -178,10 +184,12 @@ impl Kinematics {
                 "three numbers",
             )?;
         }
-        if let Some(deviation) = description.corner_deviation {
-            let good = deviation > 0.0 && deviation.is_finite();
-            check(|| "corner_deviation".into(), deviation, good, "a positive number")?;
-        }
+        let good = |value: f64| value > 0.0 && value.is_finite();
+        let deviation = description.corner_deviation.unwrap_or(1.0);
+        check(|| "corner_deviation".into(), deviation, good(deviation), "positive")?;
+        let (smoothing, expected) = (description.smoothing, "positive, or 0");
+        let averages = smoothing == 0.0 || good(smoothing);
+        check(|| "smoothing".into(), smoothing, averages, expected)?;
         let zero = Vector3::from(description.part_zero);
         let table: Vec<Joint> = description
             .table

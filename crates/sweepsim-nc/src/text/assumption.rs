@@ -23,6 +23,9 @@ pub struct Assumption {
     pub settle: String,
     /// Whether the part, or what is found wrong with the program, depends on it.
     pub changes_verdict: bool,
+    /// The tool whose size was taken for what a register of a diameter holds: it may hold the tool's wear, 0, instead
+    /// ([`ReadOptions::wear_registers`](crate::ReadOptions::wear_registers)).
+    pub size_of: Option<u32>,
     /// The file of the first place: an index of [`Program::files`](crate::Program::files).
     pub file: usize,
     /// The line of the first place, from 1.
@@ -39,6 +42,7 @@ impl Assumption {
             taken: taken.into(),
             settle: settle.into(),
             changes_verdict: true,
+            size_of: None,
             file: 0,
             line: 0,
             count: 1,

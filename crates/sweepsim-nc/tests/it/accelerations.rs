@@ -6,14 +6,14 @@ use std::fmt::Write;
 use proptest::prelude::*;
 use sweepsim_nc::{AxisLaw, CORNER_DEVIATION, Controller, Machine, Program, ReadOptions, gcode, siemens};
 
-fn options(machine: &str) -> ReadOptions {
+pub fn options(machine: &str) -> ReadOptions {
     let mut options = ReadOptions::default();
     options.machine = Machine::read(machine).unwrap();
     options
 }
 
 /// Axes with these accelerations; more fields of the machine.
-fn mill(accelerations: [f64; 3], more: &str) -> ReadOptions {
+pub fn mill(accelerations: [f64; 3], more: &str) -> ReadOptions {
     let [x, y, z] = accelerations;
     options(&format!(
         "Machine(name: \"mill\", linear: [(letter: 'X', acceleration: {x:?}), (letter: 'Y', acceleration: {y:?}), (letter: 'Z', acceleration: {z:?})], {more})"
@@ -29,12 +29,12 @@ fn feeds(program: &Program) -> Vec<f64> {
         .collect()
 }
 
-fn times(text: &str, options: &ReadOptions) -> Vec<f64> {
+pub fn times(text: &str, options: &ReadOptions) -> Vec<f64> {
     feeds(&gcode::read(&format!("G21 G90\nG0 X0 Y0 Z0\n{text}"), options).unwrap())
 }
 
 #[track_caller]
-fn near(found: &[f64], expected: &[f64]) {
+pub fn near(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
     for (a, b) in found.iter().zip(expected) {
         assert!((a - b).abs() < 1e-9, "{found:?} {expected:?}");

@@ -224,7 +224,7 @@ fn contours_that_are_not_understood_are_said() {
     let mut strict = options();
     strict.strict = true;
     for call in [
-        "SLOT2(50,0,2,-4,,1,70,10,5,5,30,20,0,100,500,4)",
+        "CYCLE78(50,0,2,-9,,,,8,1.25,1,0)",
         "CYCLE70(50,0,2,-9,20,1,0,1.5,1,0,500,0,10,20)",
     ] {
         let error = siemens::read(&format!("T1 D1\nM6\nG0 X0 Y0 Z50\n{call}\n"), &strict)

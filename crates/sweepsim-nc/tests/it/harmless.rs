@@ -55,7 +55,7 @@ fn high_speed_modes() {
     );
     refused(
         "G05 P10001 L2",
-        &format!("1: G5: high-speed modes other than P0 and P10000 are not supported yet: {PATH}"),
+        &format!("1: G5: high-speed modes other than P0, P1, P2 and P10000 are not supported yet: {PATH}"),
     );
     refused(
         "G5.1 Q2",

@@ -380,7 +380,7 @@ fn bad_programs_say_where_and_what() {
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nFL X+1",
-            "2:1: FL is not supported yet: expected L, C, CC, CR, CT, CP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
+            "2:1: the free contour is not determined by its blocks up to line 2: expected more of what the drawing says, such as X, Y, AN, LEN, R or CCX and CCY",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nL X+1.5.2",

@@ -148,3 +148,104 @@ fn long_repeats_run_as_if_written_out() {
     assert_eq!(moves(&repeated).len(), 4500);
     assert_eq!(moves(&repeated), moves(&read(&blocks.repeat(3))));
 }
+
+#[test]
+fn patterns_of_places() {
+    let drilled = |pattern: &str, call: &str| {
+        let drill = "CYCL DEF 200 Q200=2 Q201=-5 Q206=100 Q202=5 Q210=0 Q203=1 Q204=20 Q211=0\n";
+        let program = read(&format!("PATTERN DEF {pattern}\n{drill}{call}\n"));
+        let bottoms = moves(&program)
+            .into_iter()
+            .filter(|(_, rapid, feed)| !rapid && *feed == Some(100.0));
+        bottoms
+            .map(|([x, y, z], ..)| [x, y, z].map(|c| (c * 1e6).round() / 1e6))
+            .collect::<Vec<_>>()
+    };
+    let all = "CYCL CALL PAT FMAX M3";
+    assert_eq!(
+        drilled("POS1 (X+25 Y+33.5 Z+0) POS2( X+50 Y+75 Z+4 )", all),
+        [[25.0, 33.5, -4.0], [50.0, 75.0, 0.0]]
+    );
+    assert_eq!(
+        drilled("~\nPOS1( X+1 Y+2 Z+0 ) ~\nPOS2( X+3 Y+4 Z+0 )", all),
+        [[1.0, 2.0, -4.0], [3.0, 4.0, -4.0]]
+    );
+    assert_eq!(
+        drilled("ROW1 (X+10 Y+20 D+8 NUM3 ROT+90 Z+0)", all),
+        [[10.0, 20.0, -4.0], [10.0, 28.0, -4.0], [10.0, 36.0, -4.0]]
+    );
+    assert_eq!(
+        drilled("PAT1 (X+0 Y+0 DX+10 DY+5 NUMX2 NUMY2 ROT+0 ROTX+0 ROTY+90 Z+0)", all),
+        [[0.0, 0.0, -4.0], [10.0, 0.0, -4.0], [5.0, 0.0, -4.0], [-5.0, 0.0, -4.0]]
+    );
+    let frame = drilled("FRAME1 (X+0 Y+0 DX+10 DY+5 NUMX4 NUMY3 ROT+0 ROTX+0 ROTY+0 Z+0)", all);
+    assert_eq!(frame.len(), 10);
+    assert!(
+        frame
+            .iter()
+            .all(|[x, y, _]| [0.0, 30.0].contains(x) || [0.0, 10.0].contains(y)),
+        "{frame:?}"
+    );
+    let mut once = frame.clone();
+    once.dedup();
+    assert_eq!(once, frame);
+    assert_eq!(
+        drilled("CIRC1 (X+5 Y+5 D20 START+90 NUM4 Z+0)", all),
+        [
+            [5.0, 15.0, -4.0],
+            [-5.0, 5.0, -4.0],
+            [5.0, -5.0, -4.0],
+            [15.0, 5.0, -4.0]
+        ]
+    );
+    let quarter = [[15.0, 5.0, -4.0], [5.0, 15.0, -4.0]];
+    assert_eq!(
+        drilled("PITCHCIRC1 (X+5 Y+5 D20 START+0 STEP+90 NUM2 Z+0)", all),
+        quarter
+    );
+    assert_eq!(
+        drilled("PITCHCIRC1 (X+5 Y+5 D20 START+0 END+90 NUM2 Z+0)", all),
+        quarter
+    );
+    assert_eq!(
+        drilled("POS1 (X+1 Y+1 Z+0)", "CYCL CALL POS X+7 Y+8 Z+3 FMAX M3"),
+        [[7.0, 8.0, -1.0]]
+    );
+}
+
+#[test]
+fn between_places_the_tool_is_not_lower_than_at_the_call() {
+    let program = read(
+        "CYCL DEF 200 Q200=2 Q201=-5 Q206=100 Q202=5 Q203=0 Q204=10\nPATTERN DEF POS1 (X+1 Y+1 Z+0) POS2 (X+9 Y+1 Z+0)\nCYCL CALL PAT F5000 M3\n",
+    );
+    let across: Vec<_> = moves(&program)
+        .into_iter()
+        .filter(|([_, _, z], ..)| *z == 50.0)
+        .collect();
+    // To the first place, up from Q204, and across.
+    let feed = Some(5000.0);
+    assert_eq!(
+        across,
+        [
+            ([1.0, 1.0, 50.0], false, feed),
+            ([1.0, 1.0, 50.0], true, None),
+            ([9.0, 1.0, 50.0], false, feed)
+        ]
+    );
+}
+
+#[test]
+fn what_is_wrong_with_a_pattern_is_said() {
+    let read = |text: &str| heidenhain::read(&format!("{START}{text}"), &ReadOptions::default());
+    let error = |text: &str| read(text).expect_err(text).to_string();
+    let drill = "CYCL DEF 200 Q200=2 Q201=-5 Q206=100 Q202=5 Q203=0 Q204=10\n";
+    assert!(error(&format!("{drill}CYCL CALL PAT\n")).contains("expected PATTERN DEF"));
+    assert!(error("PATTERN DEF POS1 (X+1 Y+1 Z+0)\nCYCL CALL PAT\n").contains("expected CYCL DEF"));
+    assert!(error("PATTERN DEF HEX1 (X+1 Y+1 Z+0)\n").contains("HEX"));
+    assert!(error("PATTERN DEF ROW1 (X+1 Y+1 NUM3 Z+0)\n").contains("without D"));
+    assert!(error("PATTERN DEF PAT1 (X+1 Y+1 DX1 DY1 NUMX200 NUMY200)\n").contains("at most 10000"));
+    // A table of points is left out, and that is said.
+    let program = read(&format!("{drill}SEL PATTERN \"HOLES.PNT\"\nCYCL CALL PAT\n")).unwrap();
+    let what = &program.assumptions[0].what;
+    assert_eq!(what, "the moves of the cycle at the points of HOLES.PNT");
+}

@@ -203,6 +203,10 @@ fn klartext_as_it_is_written() {
             "3 Q1=0\n4 LBL2\n5 Q1=Q1+1\n6 L X+Q1 Y+0 Z+0 FMAX\n7 FN12: IF +Q1 LT +3 GOTO LBL 2\n",
             [3.0, 0.0, 0.0],
         ),
+        (
+            "3 Q1=1\n4 FN9: IF +Q1 EQU +1 GOTO LBL7\n5 L X+9 Y+0 Z+0 FMAX\n6 LBL 7\n7 L Y+0 Z+0 FMAX\n8 L X+2 FMAX\n",
+            [2.0, 0.0, 0.0],
+        ),
         // Where the tool is, and what the control alone knows.
         (
             "3 L X+7 Y+0 Z+0 FMAX\n4 FN18: SYSREAD Q1 = ID270 NR1 IDX1\n5 L X+Q1 Y+1 FMAX\n",
@@ -273,4 +277,82 @@ fn okuma_with_variables_labels_and_calls() {
             .taken
             .contains("IF goes on; with another value it may jump")
     );
+}
+
+#[test]
+fn fixture_offsets_of_fadal() {
+    let text = "%\nN1O77(PLATE)\nN2G0G90G40G80\nN3M6T1\nN4E1X1.Y2.S2000M3\nN5H1Z3.M8\nN6G1Z-1.F10.\nN7X5.\nN8G0Z3.\nN9E2 X0Y0\nN10Z9.\nN11E0X0Y0Z0\nM30\n";
+    let program = read_as("a.nc", text);
+    let cut: Vec<[f64; 3]> = tips(&program).into_iter().filter(|tip| tip[2] == -1.0).collect();
+    assert_eq!(cut, [[1.0, 2.0, -1.0], [5.0, 2.0, -1.0]]);
+    let [(10, "the place of E2", false), (12, "the place of E0", false)] = said(&program)[..] else {
+        panic!("{:?}", program.assumptions)
+    };
+    // Placed by the user.
+    let mut options = ReadOptions::default();
+    options.offsets.insert("E2".to_owned(), [100.0, 0.0, 0.0]);
+    let program = read_text(text, Path::new("a.nc"), &options).unwrap();
+    assert!(tips(&program).contains(&[100.0, 0.0, 3.0]), "{:?}", tips(&program));
+    // What is extruded, and exponents, are errors as before.
+    for wrong in [
+        "G1 X5 E2 F100\n",
+        "G92 E0\n",
+        "G0 X1E2\n",
+        "G1 X0 F9\nX5 E2\n",
+        "G0 X0 E1.5\n",
+        "G1 E5 F9\n",
+    ] {
+        let text = format!("G0 X0 Y0 Z0\n{wrong}");
+        let read = read_text(&text, Path::new("a.nc"), &ReadOptions::default());
+        assert!(
+            read.is_err_and(|error| error.to_string().contains("E words are")),
+            "{wrong}"
+        );
+    }
+}
+
+/// The heads and ends that posts write for Mazak's EIA, Brother, Hurco and Centroid: each as it is, with nothing
+/// assumed that cuts.
+#[test]
+fn heads_of_other_controls() {
+    let cut = "G1 Z-1. F100.\nX10.\nG0 Z5.\n";
+    for (name, head, end) in [
+        (
+            "mazak.eia",
+            "%\nO1234(BRACKET)\nG0 G17 G21 G40 G49 G54 G64 G80 G90 G94 G98\nG91 G28 Z0.\nT1 T2 M6\nG90 G0 X0. Y0.\nG61.1 P2\nS2000 M3\nG43 H1 Z5.\nG5 P2\nM51\n",
+            "G5 P0\nM9\nG49 G91 G28 Z0.\nG28 X0. Y0.\nM30\n%\n",
+        ),
+        (
+            "brother.nc",
+            "%\nO1000(BRACKET)\nG0 G17 G21 G40 G49 G80 G90\nG100 T1 X0. Y0. Z5. G43 H1 L2 S2000 M3\nM298 L1\n",
+            "M298 L0\nM494\nG53 G0 Z0.\nM30\n%\n",
+        ),
+        (
+            "hurco.hnc",
+            "%\n(PROGRAM NAME - BRACKET)\nG21\nG0 G17 G40 G80 G90\nT1 M6\nG5.3 P35\nG0 G90 G54 X0. Y0. S2000 M3\nG43 H1 Z5. M8\n",
+            "M5\nM9\nG0 G28 G91 Z0.\nM59\nM30\n",
+        ),
+        (
+            "centroid.cnc",
+            "; BRACKET\nG21 G17 G40 G80 G90\nM25\nT1 M6\nS2000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z5.\n",
+            "M25 G49\nM5\nG0 X0 Y0\nM30\n",
+        ),
+    ] {
+        let program = read_as(name, &format!("{head}{cut}{end}"));
+        let all = tips(&program);
+        assert!(
+            all.windows(2).any(|pair| pair == [[0.0, 0.0, -1.0], [10.0, 0.0, -1.0]]),
+            "{name}: {all:?}"
+        );
+        assert_eq!(
+            program.poses.iter().find(|pose| !pose.rapid).and_then(|pose| pose.tool),
+            Some(1),
+            "{name}"
+        );
+        assert!(
+            program.assumptions.iter().all(|one| !one.changes_verdict),
+            "{name}: {:?}",
+            program.assumptions
+        );
+    }
 }

@@ -7,6 +7,7 @@ use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, OtherCourses, Path, RotaryTable};
 use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions};
 
+use super::as_wear::AssumedSizes;
 use super::{Flags, JobPath, Origins, PathPlace, inline, program, spline_motion};
 use crate::error::{FormatError, Problem};
 use crate::jobs::place::Step;
@@ -41,13 +42,17 @@ impl JobReader<'_> {
         let mut paths = self.own_paths(own, raw, &at, tools, tolerance)?;
         let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from));
         for path in &mut paths {
-            (path.setup, path.frame) = (place.setup, frame);
-            if !frame.is_world() {
-                let moved = path.path.moved(&turn, frame.origin());
-                path.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
-                let moved = path.other_courses.moved(&turn, frame.origin());
-                path.other_courses = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
-            }
+            let place = |path: &mut JobPath| {
+                (path.setup, path.frame) = (place.setup, frame);
+                if !frame.is_world() {
+                    path.path = path.path.moved(&turn, frame.origin())?;
+                    path.other_courses = path.other_courses.moved(&turn, frame.origin())?;
+                }
+                Ok(())
+            };
+            let as_wear = path.as_wear.as_mut().and_then(|other| other.path.as_mut());
+            let placed = as_wear.map_or(Ok(()), place).and_then(|()| place(path));
+            placed.map_err(|error| self.error(Problem::Path(error), &at))?;
         }
         Ok(paths)
     }
@@ -118,6 +123,7 @@ impl JobReader<'_> {
                 files: Arc::new([]),
                 calls: Arc::new([]),
                 notes: Vec::new(),
+                as_wear: None,
             }]
         };
         let inline = |made: Result<Path, inline::PoseFault>, field: &str| {
@@ -220,7 +226,15 @@ impl JobReader<'_> {
                     shown: name,
                     provided: self.provided,
                 };
-                program::of_program(program, origin, raw.tool, own_law, tools)
+                let sizes = AssumedSizes::of(&program.assumptions);
+                let mut paths = program::of_program(program, origin, raw.tool, own_law, tools)?;
+                if let Some(sizes) = sizes {
+                    sizes.compare(&mut paths, raw.tool, &options, |options| {
+                        let program = self.provided.program(&file, options).map_err(FormatError::from)?;
+                        program::of_program(program, origin, raw.tool, own_law, tools)
+                    });
+                }
+                Ok(paths)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");

@@ -1,5 +1,6 @@
 //! The paths of a job: poses in the job itself, or a file whose extension determines its format.
 
+mod as_wear;
 mod columns;
 mod course;
 mod entry;
@@ -9,6 +10,7 @@ mod program;
 mod section;
 mod spline_motion;
 
+pub use as_wear::AsWear;
 pub use columns::{Flags, Origins, Seconds};
 pub use machine::OnMachine;
 
@@ -75,6 +77,8 @@ pub struct JobPath {
     pub calls: Arc<[Call]>,
     /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
+    /// The same path as it is if assumed registers of diameters hold the wear of their tools, if it then differs.
+    pub as_wear: Option<Box<AsWear>>,
 }
 
 /// Where a pose of a program comes from.

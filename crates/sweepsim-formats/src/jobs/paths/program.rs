@@ -13,6 +13,7 @@ use crate::jobs::provided::Provided;
 use crate::jobs::tools::ToolBox;
 
 /// Where a program comes from: its file, and what the job calls it.
+#[derive(Clone, Copy)]
 pub(crate) struct ProgramOrigin<'a> {
     pub file: &'a FilePath,
     pub shown: &'a str,

@@ -145,6 +145,7 @@ impl Section {
             files: whole.files.clone(),
             calls: whole.calls.clone(),
             notes: Vec::new(),
+            as_wear: None,
         })
     }
 }

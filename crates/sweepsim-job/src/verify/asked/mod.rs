@@ -11,16 +11,16 @@ use sweepsim_formats::{Job, JobPath};
 use sweepsim_proof::{Convex, Cutter, Limits, Movers, Room, cover, margin, motions, outline, regions};
 
 /// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
-const WIDTH: f64 = 0.1;
+pub(in crate::verify) const WIDTH: f64 = 0.1;
 /// The same where something may only be touched.
 const WIDTH_OF_CONTACT: f64 = 0.5;
 /// Concave outlines are replaced by chords within this part of the limit.
-const CHORDS: f64 = 0.01;
+pub(in crate::verify) const CHORDS: f64 = 0.01;
 /// What goes no deeper into something than this touches it, in millimetres.
 const CONTACT: f64 = 1e-3;
 /// The most pairs of a cell and a time that are looked at in a request: so many, and so many for each move.
-const PAIRS: usize = 500_000;
-const PAIRS_OF_MOVE: usize = 400;
+pub(in crate::verify) const PAIRS: usize = 500_000;
+pub(in crate::verify) const PAIRS_OF_MOVE: usize = 400;
 /// The most zones that are looked at in a statement about the stock: so many, and so many for each move.
 const ZONES: usize = 200_000;
 const ZONES_OF_MOVE: usize = 100;

@@ -4,6 +4,9 @@ mod bodies;
 mod excess;
 mod machine;
 mod process;
+mod registers;
+
+pub(super) use registers::compare as compare_registers;
 
 use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::frames::Frames;
 use super::line::{self, Line};
 use super::routine::Routine;
-use super::state::Cycles;
+use super::state::{Cycles, FreeContour, Pattern};
 use super::values::{Jump, Parameters};
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{ProgramPlace, Sense, Track};
@@ -65,6 +65,7 @@ pub(super) struct Reader<'a> {
     /// The last move's end is made by the RND or CHF that follows.
     pub rounded: bool,
     pub cycles: Cycles,
+    pub free: FreeContour,
     pub uncertain: bool,
     /// The program of SEL PGM.
     pub(super) selected: Option<String>,
@@ -92,6 +93,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         },
         rounded: false,
         cycles: Cycles::default(),
+        free: FreeContour::default(),
         uncertain: false,
         selected: None,
         library,
@@ -241,12 +243,12 @@ impl Reader<'_> {
         ))
     }
 
-    fn following_lines(&self) -> impl Iterator<Item = (usize, Rc<Line>)> {
+    pub(super) fn following_lines(&self) -> impl Iterator<Item = (usize, Rc<Line>)> {
         let level = self.stack.last();
         let lines = level.map(|level| (&self.routines[level.routine], level.next));
         lines.into_iter().flat_map(|(routine, next)| {
             let blocks = (next..routine.len()).map(|index| (index + 1, routine.block(index)));
-            blocks.filter(|(_, block)| !block.tokens.is_empty())
+            blocks.filter(|(_, block)| !block.tokens.is_empty() && !block.word(0).starts_with("FSELECT"))
         })
     }
 
@@ -277,6 +279,9 @@ impl Reader<'_> {
             "TOOL" if line.word(1) == "CALL" => self.tool_call(line)?,
             "TOOL" if line.word(1) == "DEF" => self.tool_definition(line)?,
             "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CC" | "RND" | "CHF" | "M140" => self.path(line)?,
+            "FL" | "FLT" | "FC" | "FCT" | "FPOL" => self.free_block(line)?,
+            // Which of several contours, by the control's own numbers: said where there are several.
+            word if word.starts_with("FSELECT") => {}
             "LBL" if line.word(1) == "0" => {
                 if matches!(
                     self.stack.last(),
@@ -313,6 +318,11 @@ impl Reader<'_> {
             }
             "APPR" | "DEP" => self.approach_block(line)?,
             "TRANS" if line.word(1) == "DATUM" => self.datum_block(line)?,
+            "PATTERN" if line.word(1) == "DEF" => self.pattern_block(line)?,
+            "SEL" if line.word(1) == "PATTERN" => {
+                self.cycles.pattern = Pattern::Table(line.word(2).trim_matches('"').to_owned());
+                self.ignore(line);
+            }
             "SEL" if line.word(1) == "PGM" => self.selected = Some(line.word(2).to_owned()),
             "CALL" if line.word(1) == "SELECTED" => {
                 let path = self.selected.clone().unwrap_or_default();

@@ -1,7 +1,11 @@
 //! Cycles that have been defined: the cycle that is called, and what cycles on contours share.
 
+use std::collections::VecDeque;
+use std::ops::Range;
+
 use super::line::Line;
 use super::values::Parameters;
+use crate::drive::free::{Flat, Solved};
 use crate::drive::{Cycle, Pocket};
 use crate::text::error::{Located, NcProblem};
 
@@ -11,7 +15,39 @@ pub(super) struct Cycles {
     pub(super) cycle: Option<Cycle>,
     /// Its number and its block, which patterns take with other levels.
     pub(super) block: Option<(u32, Line)>,
+    /// Where `CYCL CALL PAT` calls it.
+    pub(super) pattern: Pattern,
     pub(super) contours: ContourData,
+}
+
+/// Where a cycle is called: in the plane, and by how much its surface is above that of its definition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CyclePlace {
+    pub(super) at: [f64; 2],
+    pub(super) above: f64,
+}
+
+/// What `PATTERN DEF` or `SEL PATTERN` names.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Pattern {
+    #[default]
+    None,
+    Places(Vec<CyclePlace>),
+    /// A table of points, by its name.
+    Table(String),
+}
+
+/// What free contours share from block to block.
+#[derive(Default)]
+pub(super) struct FreeContour {
+    /// The pole of FPOL.
+    pub(super) pole: Option<Flat>,
+    /// The elements that are still to be made, with their lines.
+    pub(super) solved: VecDeque<(usize, Solved)>,
+    /// The lines of a contour that is wrong: what is said of its first one is enough.
+    pub(super) wrong: Range<usize>,
+    /// The steps of all searches.
+    pub(super) steps: usize,
 }
 
 /// What cycles 14 and 20 say.

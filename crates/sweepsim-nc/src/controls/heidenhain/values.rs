@@ -144,9 +144,18 @@ impl Parameters {
         let rest: Vec<&str> = words[2..].iter().map(String::as_str).collect();
         let value = |text: &str| self.value(text).map_err(whole);
         if (9..=12).contains(&number) {
-            let ["IF", a, operator, b, "GOTO", "LBL", label] = rest[..] else {
+            let (["IF", a, operator, b, "GOTO", "LBL", label] | ["IF", a, operator, b, "GOTO", label]) = rest[..]
+            else {
                 return fail("expected FN 9: IF +Q1 EQU +0 GOTO LBL 1");
             };
+            // LBL7 is LBL 7.
+            let label = match rest.len() {
+                7 => label,
+                _ => label.strip_prefix("LBL").unwrap_or_default(),
+            };
+            if label.is_empty() {
+                return fail("expected FN 9: IF +Q1 EQU +0 GOTO LBL 1");
+            }
             let (a, b) = (value(a)?, value(b)?);
             let goes = match (number, operator) {
                 (9, "EQU") => a == b,

@@ -66,7 +66,7 @@ impl Reader<'_> {
                     register: &format!("the radius of T{tool} D{edge}"),
                     option: &format!("D{tool}"),
                     unit: self.modes.unit(),
-                    wear: false,
+                    wear: self.options.wear_registers && unknown == 0.0,
                     unknown,
                 };
                 self.track.assume_diameter(&asked).map(|diameter| 0.5 * diameter)

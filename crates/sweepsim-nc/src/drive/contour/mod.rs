@@ -3,6 +3,7 @@
 mod blend;
 mod compensation;
 mod corner;
+pub(crate) mod free;
 mod joins;
 mod narrow;
 mod queue;

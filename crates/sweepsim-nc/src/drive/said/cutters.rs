@@ -74,7 +74,9 @@ impl Track {
             ),
         };
         let settle = format!("--diameters {}=… (in a job: diameters), {other}", asked.option);
-        self.assume(Assumption::new(asked.register, taken, settle));
+        let mut assumption = Assumption::new(asked.register, taken, settle);
+        assumption.size_of = self.tool.filter(|_| known.is_some() && !asked.wear);
+        self.assume(assumption);
         Some(diameter)
     }
 }

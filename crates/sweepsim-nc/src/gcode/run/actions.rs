@@ -138,7 +138,7 @@ impl Reader {
         self.track.leave(axes);
     }
 
-    fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {
+    pub(super) fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {
         if index != self.offsets.work.active {
             self.refuse_compensation("a change of the work offset")?;
         }

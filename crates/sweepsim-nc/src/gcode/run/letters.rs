@@ -1,6 +1,9 @@
 //! Which letters a block may have.
 
 use super::interpreter::Reader;
+use crate::drive::WorkOffset;
+use crate::gcode::codes::MotionMode;
+use crate::gcode::offsets::{FADAL, MOST_OF_FADAL};
 use crate::gcode::syntax::block::Block;
 use crate::model::read_options::Controller;
 use crate::text::error::{Located, NcProblem};
@@ -8,7 +11,11 @@ use crate::text::error::{Located, NcProblem};
 impl Reader {
     /// Each letter at most once, and none that could move the tool in an unknown way.
     pub(super) fn check_letters(&mut self, block: &Block) -> Result<(), Located> {
-        if let Some(word) = block.twice {
+        let changes = block.words().iter().any(|w| (w.letter, w.value) == ('M', 6.0));
+        if block.twice.is_some_and(|word| word.letter == 'T' && changes) {
+            self.track
+                .note("the second T of a change of tools is taken for the next tool, as on Mazak's controls");
+        } else if let Some(word) = block.twice {
             let problem = NcProblem::syntax(format!("a second {} in one block: expected one", word.letter));
             return Err((problem, word.span()));
         }
@@ -27,6 +34,7 @@ impl Reader {
                     (w.letter == 'M' && (62.0..=68.0).contains(&w.value))
                         || (w.letter == 'G' && matches!(w.value, 47.0 | 187.0))
                 }) => {}
+                'E' if self.fixture_offset(block).is_some() => {}
                 'E' => {
                     return fail(NcProblem::unsupported(
                         "E words are",
@@ -47,6 +55,29 @@ impl Reader {
             }
         }
         self.check_spare_words(block)
+    }
+
+    /// The work offset that `E1` means on Fadal's controls: a whole number in a block that feeds nowhere. Elsewhere E
+    /// is what is extruded, or an exponent.
+    pub(super) fn fixture_offset(&self, block: &Block) -> Option<WorkOffset> {
+        let words = block.words();
+        let at = words.iter().position(|word| word.letter == 'E')?;
+        let word = words[at];
+        let is_number = word.whole && (0.0..=f64::from(MOST_OF_FADAL)).contains(&word.value);
+        // X1E2 is a number with an exponent.
+        let apart = at.checked_sub(1).is_none_or(|before| {
+            let before = words[before];
+            before.span().end < word.span().start || matches!(before.letter, 'N' | 'G' | 'M')
+        });
+        let code = |codes: &[f64]| {
+            words
+                .iter()
+                .any(|word| word.letter == 'G' && codes.contains(&word.value))
+        };
+        let moves = block.first("XYZABC").is_some();
+        let feeds = code(&[1.0, 2.0, 3.0, 92.0])
+            || moves && !code(&[0.0]) && matches!(self.modes.motion, Some(motion) if motion != MotionMode::Rapid);
+        (is_number && apart && !feeds && !block.has('F')).then_some(FADAL + word.value as WorkOffset)
     }
 
     /// LinuxCNC rejects words that no code of their block uses.

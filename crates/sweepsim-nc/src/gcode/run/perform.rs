@@ -46,7 +46,12 @@ impl Reader {
         }
         self.check_plane_blocks(block)
             .map_err(|problem| (problem, block.all()))?;
+        let fixture = self.fixture_offset(block);
         let plan = self.modal(block)?;
+        if let Some(offset) = fixture {
+            self.select(offset).map_err(|problem| (problem, block.span('E')))?;
+            self.track.note("E is taken for a work offset, as on Fadal's controls");
+        }
         let unit = self.unit();
         if let Some(trace) = &mut self.track.trace {
             trace.unit = unit;
@@ -234,7 +239,11 @@ impl Reader {
                     }
                     self.modes.motion = Some(motion);
                 }
-                Code::CancelMotion => self.modes.motion = None,
+                // G0 in the same block stays in effect.
+                Code::CancelMotion => {
+                    let given = plan.motion.is_some() && !matches!(self.modes.motion, Some(MotionMode::Cycle(_)));
+                    self.modes.motion = self.modes.motion.filter(|_| given);
+                }
                 Code::Plane(plane) => {
                     if plane != self.modes.plane {
                         self.refuse_compensation("a change of the plane")
@@ -265,6 +274,10 @@ impl Reader {
                 }
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::ChangeTool => plan.changes_tool = true,
+                Code::ChangeToolOnTheWay => {
+                    (plan.changes_tool, plan.motion) = (true, Some(word));
+                    self.modes.motion = Some(MotionMode::Rapid);
+                }
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
                 Code::TipControl(on) => (self.tip.by_length, self.tip.vectors) = (on, false),
                 Code::TipVectors => (self.tip.by_length, self.tip.vectors) = (true, true),

@@ -246,7 +246,7 @@ pub(super) fn compare_registers(program: &mut Program, as_wear: impl FnOnce() ->
     let registers: Vec<&str> = program
         .assumptions
         .iter()
-        .filter(|one| one.what.starts_with('D') && one.taken.starts_with("the size of"))
+        .filter(|one| one.size_of.is_some())
         .map(|one| one.what.as_str())
         .collect();
     if registers.is_empty() || as_wear().is_none_or(|other| narrow(&other).1 >= count) {

@@ -46,7 +46,7 @@ impl<'a> Accelerating<'a> {
     pub fn new(program: &'a Program, machine: &'a Kinematics) -> Option<Self> {
         accelerates(machine).then(|| Self {
             axes: Dynamics::new(machine),
-            chain: Chain::default(),
+            chain: Chain::new(machine.description().smoothing),
             events: program.events.iter().peekable(),
             next: 1,
         })
@@ -108,7 +108,6 @@ pub(super) struct Way {
 }
 
 /// Feed moves that follow one another.
-#[derive(Default)]
 struct Chain {
     profile: Profile,
     /// The tangent at the end of the last one, and its length.
@@ -116,6 +115,13 @@ struct Chain {
 }
 
 impl Chain {
+    fn new(smoothing: f64) -> Self {
+        Self {
+            profile: Profile::new(smoothing),
+            last: None,
+        }
+    }
+
     fn push(&mut self, axes: &Dynamics, full: [f64; 2], way: &Way) {
         let corner = match (self.last, way.tangents) {
             (Some((last, length)), Some([first, _])) => axes.corner(last, first, 0.5 * length.min(way.length)),

@@ -157,25 +157,37 @@ fn assumed_rapid(from: &ProgramPose, to: &ProgramPose) -> f64 {
 }
 
 /// The axes that move: the way of each in mm or degrees, its speed per minute and acceleration per s², and whether the speed is assumed.
-struct Axes(Vec<(f64, f64, Option<f64>, bool)>);
+struct Axes {
+    moving: Vec<(f64, f64, Option<f64>, bool)>,
+    /// Over how many seconds speeds are averaged, if any of them accelerates.
+    smoothing: f64,
+}
 
 impl Axes {
     fn new(machine: &Kinematics, from: &Position, to: &Position) -> Self {
         let linear = machine.linear().iter().map(|axis| {
             let k = "XYZ".find(axis.letter).unwrap_or(0);
-            (to.xyz[k] - from.xyz[k], axis.speed, RAPID_SPEED, axis.acceleration)
+            let acceleration = axis.rapid_acceleration.or(axis.acceleration);
+            (to.xyz[k] - from.xyz[k], axis.speed, RAPID_SPEED, acceleration)
         });
         let rotary = machine.rotary().map(|axis| {
             let k = "ABC".find(axis.letter).unwrap_or(0);
             (to.abc[k] - from.abc[k], axis.speed, RAPID_TURN, axis.acceleration)
         });
         let all = linear.chain(rotary).filter(|(way, ..)| *way != 0.0);
-        Self(
-            all.map(|(way, speed, other, acceleration)| {
-                (way.abs(), speed.unwrap_or(other), acceleration, speed.is_none())
-            })
-            .collect(),
-        )
+        let moving = all.map(|(way, speed, other, acceleration)| {
+            (way.abs(), speed.unwrap_or(other), acceleration, speed.is_none())
+        });
+        let moving: Vec<_> = moving.collect();
+        let accelerates = moving.iter().any(|axis| axis.2.is_some());
+        Self {
+            moving,
+            smoothing: if accelerates {
+                machine.description().smoothing
+            } else {
+                0.0
+            },
+        }
     }
 
     /// From rest to rest, each as fast as it can; in seconds.
@@ -190,13 +202,13 @@ impl Axes {
                 Some(a) => way / speed + speed / a,
             }
         };
-        let longest = self.0.iter().map(seconds).fold(0.0, f64::max);
-        (longest, self.0.iter().any(|axis| axis.3))
+        let longest = self.moving.iter().map(seconds).fold(0.0, f64::max);
+        (longest + self.smoothing, self.moving.iter().any(|axis| axis.3))
     }
 
     /// What the slowest axis of those with a known speed needs, in seconds.
     fn at_full_speed(&self) -> f64 {
-        let known = self.0.iter().filter(|axis| !axis.3);
+        let known = self.moving.iter().filter(|axis| !axis.3);
         known.map(|(way, speed, ..)| 60.0 * way / speed).fold(0.0, f64::max)
     }
 }

@@ -25,8 +25,16 @@ pub(super) struct Stretch {
 /// The squares of the speeds at the ends of stretches are the largest with `v² ≤ w² + 2 a L` between neighbours: one pass against the path for what
 /// it must brake to, and one along it for what it can reach. That is the look-ahead of Grbl's planner, over the whole path. Stretches are kept from where it
 /// may still have to brake for what follows; all but the last of them are packed, and looked at part by part.
+///
+/// A control that averages speeds over a time `T` comes down to a speed `u` between stretches of larger speeds, up to
+/// `P` on the slower of them, only if it stays at `u` for `T`: that takes `T (1 − u/P)` longer, and `T` from rest to
+/// rest. It is counted in the stretch that begins there.
 #[derive(Debug, Default)]
 pub(super) struct Profile {
+    /// Over how many seconds speeds are averaged.
+    smoothing: f64,
+    /// The largest speed on the stretch whose time was given last, if nothing rested since.
+    peak: Option<f64>,
     packed: PackedRows<6>,
     /// The last stretches.
     open: Vec<Stretch>,
@@ -44,6 +52,14 @@ const OPEN: usize = 1 << 14;
 const PART: usize = 1 << 11;
 
 impl Profile {
+    /// Of a control that averages speeds over so many seconds.
+    pub fn new(smoothing: f64) -> Self {
+        Self {
+            smoothing,
+            ..Self::default()
+        }
+    }
+
     /// The number of stretches whose times are not known yet.
     pub fn len(&self) -> usize {
         self.packed.len() + self.open.len()
@@ -87,7 +103,7 @@ impl Profile {
     /// Gives the times of all moves, after which there is a rest.
     pub fn rest(&mut self, each: impl FnMut(MoveTime)) {
         self.take(self.len(), 0.0, each);
-        (self.entry, self.left) = (0.0, 0);
+        (self.entry, self.left, self.peak) = (0.0, 0, None);
     }
 
     /// The largest square of the speed at the start of a stretch from which it can brake to that at its end.
@@ -100,6 +116,16 @@ impl Profile {
             }
         };
         most.min(end + stretch.gain())
+    }
+
+    /// How much longer the speed between the last stretch and one with this largest speed makes it.
+    fn dip(&self, speed: f64, peak: f64) -> f64 {
+        let slower = self.peak.map_or(peak, |last| last.min(peak));
+        if slower.is_finite() {
+            self.smoothing * (1.0 - speed.min(slower) / slower)
+        } else {
+            0.0
+        }
     }
 
     /// Takes the first stretches away, with the square of the speed that can be braked to at the end of the last of them.
@@ -123,7 +149,10 @@ impl Profile {
             squares[0] = start.unwrap_or(squares[0]);
             for (k, (_, stretch)) in stretches.pairs().enumerate() {
                 squares[k + 1] = squares[k + 1].min(squares[k] + stretch.gain());
-                each(stretch.time([squares[k], squares[k + 1]]));
+                let ends = [squares[k], squares[k + 1]];
+                let peak = stretch.peak(ends);
+                each(stretch.time(ends, self.dip(squares[k].sqrt(), peak)));
+                self.peak = Some(peak);
             }
             start = squares.pop();
         }
@@ -199,15 +228,31 @@ impl Stretch {
         }
     }
 
-    /// The time of its move, by the squares of the speeds at its ends.
-    fn time(&self, squares: [f64; 2]) -> MoveTime {
+    /// The time of its move, by the squares of the speeds at its ends, and so many seconds more.
+    fn time(&self, squares: [f64; 2], more: f64) -> MoveTime {
         let [full, rest] = self.full;
         MoveTime {
             // Rounding makes no move faster than at full speed.
-            seconds: Some(full.max(self.seconds(squares))),
+            seconds: Some(full.max(self.seconds(squares)) + more),
             rest,
             assumed: false,
         }
+    }
+
+    /// How long the ramps between its ends and a speed are together.
+    fn ramps(&self, squares: [f64; 2], speed: f64) -> f64 {
+        let ramp = |square: &f64| (speed * speed - square) / (2.0 * self.acceleration);
+        squares.iter().map(ramp).sum()
+    }
+
+    /// The largest speed on it, by the squares of those at its ends.
+    fn peak(&self, squares: [f64; 2]) -> f64 {
+        if self.acceleration == f64::INFINITY || self.ramps(squares, self.speed) <= self.length {
+            return self.speed;
+        }
+        // The ramps meet before, at v² = w² + 2 a l from both sides, with lengths l that make up the stretch.
+        let square = 0.5 * (squares[0] + squares[1]) + self.acceleration * self.length;
+        square.max(squares[0]).max(squares[1]).sqrt()
     }
 
     /// How long it takes, by the squares of the speeds at its ends.
@@ -215,18 +260,8 @@ impl Stretch {
         if self.acceleration == f64::INFINITY {
             return self.length / self.speed;
         }
-        // The ramps between its ends and its largest speed.
-        let ramps: f64 = squares
-            .iter()
-            .map(|square| (self.speed * self.speed - square) / (2.0 * self.acceleration))
-            .sum();
-        let (peak, rest) = if ramps <= self.length {
-            (self.speed, self.length - ramps)
-        } else {
-            // They meet before, at v² = w² + 2 a l from both sides, with lengths l that make up the stretch.
-            let square = 0.5 * (squares[0] + squares[1]) + self.acceleration * self.length;
-            (square.max(squares[0]).max(squares[1]).sqrt(), 0.0)
-        };
+        let peak = self.peak(squares);
+        let rest = (self.length - self.ramps(squares, self.speed)).max(0.0);
         let change: f64 = squares.iter().map(|square| peak - square.sqrt()).sum();
         change / self.acceleration + if rest > 0.0 { rest / peak } else { 0.0 }
     }
@@ -253,17 +288,23 @@ mod tests {
     }
 
     /// All at once, by two passes over the whole path.
-    fn whole(stretches: &[Stretch]) -> Vec<MoveTime> {
+    fn whole(stretches: &[Stretch], smoothing: f64) -> Vec<MoveTime> {
         let mut squares = vec![0.0; stretches.len() + 1];
         for (k, stretch) in stretches.iter().enumerate().skip(1).rev() {
             let speed = stretches[k - 1].speed.min(stretch.speed);
             squares[k] = stretch.corner.min(speed * speed).min(squares[k + 1] + stretch.gain());
         }
-        let passed = stretches.iter().enumerate().map(|(k, stretch)| {
+        for (k, stretch) in stretches.iter().enumerate() {
             squares[k + 1] = squares[k + 1].min(squares[k] + stretch.gain());
-            let seconds = stretch.seconds([squares[k], squares[k + 1]]);
+        }
+        let ends = |k: usize| [squares[k], squares[k + 1]];
+        let peak = |k: usize| stretches[k].peak(ends(k));
+        let passed = stretches.iter().enumerate().map(|(k, stretch)| {
+            let seconds = stretch.seconds(ends(k));
+            let slower = peak(k.saturating_sub(1)).min(peak(k));
+            let dip = smoothing * (1.0 - squares[k].sqrt().min(slower) / slower);
             MoveTime {
-                seconds: Some(seconds.max(stretch.full[0])),
+                seconds: Some(seconds.max(stretch.full[0]) + dip),
                 rest: stretch.full[1],
                 assumed: false,
             }
@@ -272,8 +313,8 @@ mod tests {
     }
 
     /// One after the other, and the most stretches that were kept.
-    fn passed(stretches: &[Stretch]) -> (Vec<MoveTime>, usize) {
-        let (mut profile, mut times, mut most) = (Profile::default(), Vec::new(), 0);
+    fn passed(stretches: &[Stretch], smoothing: f64) -> (Vec<MoveTime>, usize) {
+        let (mut profile, mut times, mut most) = (Profile::new(smoothing), Vec::new(), 0);
         for stretch in stretches {
             profile.push(*stretch);
             most = most.max(profile.len());
@@ -289,7 +330,7 @@ mod tests {
 
         /// Times that are settled before the end are those that the whole path gives, to the last bit; slow ones, too, which are settled late.
         #[test]
-        fn settled_times_are_those_of_the_whole(stretches in proptest::collection::vec(stretch(), 1..9_000), slow in any::<bool>(), repeat in 1..8_usize) {
+        fn settled_times_are_those_of_the_whole(stretches in proptest::collection::vec(stretch(), 1..9_000), slow in any::<bool>(), repeat in 1..8_usize, smoothing in prop_oneof![Just(0.0), 0.0..0.2_f64]) {
             let mut stretches = stretches;
             if slow {
                 for stretch in &mut stretches {
@@ -297,8 +338,8 @@ mod tests {
                 }
                 stretches = stretches.repeat(repeat);
             }
-            let (settled, most) = passed(&stretches);
-            prop_assert!(settled == whole(&stretches));
+            let (settled, most) = passed(&stretches, smoothing);
+            prop_assert!(settled == whole(&stretches, smoothing));
             prop_assert!(slow || most <= LOOK + 2 * 200, "{}", most);
         }
     }

@@ -5,6 +5,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
 use crate::controls::heidenhain::moves::MoveWords;
@@ -242,7 +243,8 @@ impl Reader<'_> {
             let line = self.following_after(skipped)?;
             skipped += 1;
             let words = match line.word(0) {
-                "RND" | "CHF" => continue,
+                "RND" | "CHF" | "FPOL" => continue,
+                word if is_free(word) => return self.free_way_after(&line, from),
                 "L" | "C" | "CR" | "CC" => self.words(&line).ok()?,
                 _ => return None,
             };

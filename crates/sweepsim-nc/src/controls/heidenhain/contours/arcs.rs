@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
 use crate::controls::heidenhain::moves::MoveWords;
@@ -10,7 +11,7 @@ use crate::text::error::{Located, NcProblem};
 
 /// Whether a block moves along the contour.
 fn is_contour(word: &str) -> bool {
-    matches!(word, "L" | "LP" | "C" | "CP" | "CR" | "CT")
+    matches!(word, "L" | "LP" | "C" | "CP" | "CR" | "CT") || is_free(word)
 }
 
 impl Reader<'_> {

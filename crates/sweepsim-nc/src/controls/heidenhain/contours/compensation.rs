@@ -63,7 +63,7 @@ impl Reader<'_> {
                     register: &format!("the radius of tool {tool}"),
                     option: &format!("D{tool}"),
                     unit: self.unit(),
-                    wear: false,
+                    wear: self.options.wear_registers && unknown == 0.0,
                     unknown,
                 };
                 0.5 * self.track.assume_diameter(&asked)?

@@ -3,3 +3,4 @@
 mod approach;
 mod arcs;
 mod compensation;
+mod free;

@@ -2,14 +2,11 @@
 //!
 //! Source: *TNC 620, Cycle Programming* (340 56x-02), 7.1 to 7.9. A contour is a pocket or an island by the side on which its subprogram has the tool, and the way around.
 
+use crate::controls::contour;
 use crate::controls::heidenhain::interpreter::{Level, LevelKind, Reader};
 use crate::controls::heidenhain::line::Line;
-use crate::controls::run::Running;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
-
-/// The most blocks of a contour.
-const MOST_BLOCKS: usize = 100_000;
 
 impl Reader<'_> {
     /// The levels of cycle 20, or of 25.
@@ -110,29 +107,21 @@ impl Reader<'_> {
                 "there is no LBL {label} in this program"
             ))));
         };
-        self.track.record_moves().map_err(fail)?;
         let (depth, compensated) = (self.stack.len(), self.modes.compensated);
-        self.stack.push(Level {
+        let level = Level {
             routine,
             next,
             kind: LevelKind::Subprogram,
-        });
-        let mut ran = Ok(());
-        for block in 0.. {
-            if self.stack.len() <= depth || block >= MOST_BLOCKS {
-                break;
-            }
-            let Some(at) = self.advance() else { break };
-            ran = self.run(at);
-            if ran.is_err() {
-                break;
-            }
-        }
-        self.stack.truncate(depth);
-        (self.modes.compensated, self.ended) = (compensated, false);
-        let recorded = self.track.recorded();
-        ran?;
-        let recorded = recorded.map_err(fail)?;
-        Course::of(&recorded.strokes, self.modes.plane, recorded.left).map_err(fail)
+        };
+        contour::course(
+            self,
+            self.modes.plane,
+            |reader| reader.stack.push(level),
+            |reader| reader.stack.len() > depth,
+            |reader| {
+                reader.stack.truncate(depth);
+                (reader.modes.compensated, reader.ended) = (compensated, false);
+            },
+        )
     }
 }

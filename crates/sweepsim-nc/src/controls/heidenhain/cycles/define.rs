@@ -9,9 +9,6 @@ use crate::model::event::EventKind;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
-/// The most places of a pattern.
-const MOST_PLACES: u32 = 10_000;
-
 impl Reader<'_> {
     pub(in crate::controls::heidenhain) fn defined<'a>(&'a self, number: u32, line: &'a Line) -> Defined<'a> {
         Defined {
@@ -26,12 +23,12 @@ impl Reader<'_> {
     pub(in crate::controls::heidenhain) fn cycle_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         if line.word(1) == "CALL" {
-            if let word @ ("PAT" | "POS") = line.word(2) {
-                let found = format!("CYCL CALL {word} is");
-                return Err(whole(NcProblem::unsupported(found, "expected L with M99 at each hole")));
-            }
             self.codes(line)?;
-            return self.call_cycle().map_err(whole);
+            return match line.word(2) {
+                "PAT" => self.call_at_pattern(line),
+                "POS" => self.call_at_position(line),
+                _ => self.call_cycle().map_err(whole),
+            };
         }
         let name = line.word(2);
         let (number, part) = name.split_once('.').unwrap_or((name, ""));
@@ -65,7 +62,7 @@ impl Reader<'_> {
     }
 
     /// A cycle that is called later.
-    fn define(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
+    pub(super) fn define(&mut self, number: u32, line: &Line) -> Result<Cycle, Located> {
         Ok(match number {
             200..=209 | 240 | 241 | 262..=265 | 267 => Cycle::Holes(self.holes(number, line)?),
             230 | 232 | 233 | 251..=254 | 256 | 257 => self.shape(number, line)?,
@@ -100,72 +97,5 @@ impl Reader<'_> {
                 "a cycle is called, but none is defined: expected CYCL DEF before it",
             )),
         }
-    }
-
-    /// Cycles 220 and 221: the cycle before at places on a circle or in rows, with the levels that they say.
-    fn pattern(&mut self, number: u32, line: &Line) -> Result<(), Located> {
-        let defined = self.defined(number, line);
-        let count = |parameter: u32| {
-            let count = defined.find(parameter)?.unwrap_or(1.0);
-            let expected = "a whole number from 1 on";
-            NcProblem::whole(format!("Q{parameter}"), count, 1..=MOST_PLACES, expected)
-                .map_err(|problem| defined.fail(problem))
-        };
-        let turned = |[x, y]: [f64; 2], angle: f64, [a, b]: [f64; 2]| {
-            let (sin, cos) = angle.to_radians().sin_cos();
-            [x + a * cos - b * sin, y + a * sin + b * cos]
-        };
-        let places: Vec<[f64; 2]> = if number == 220 {
-            let (count, middle) = (count(241)?, [defined.span(216)?, defined.span(217)?]);
-            let (radius, first) = (0.5 * defined.need(244)?, defined.number(245)?);
-            let stop = defined.find(246)?.unwrap_or(first + 360.0);
-            let full = ((stop - first).abs() - 360.0).abs() < 1e-9 || stop == first;
-            let gaps = if full { count } else { (count - 1).max(1) };
-            let spread = if stop == first { 360.0 } else { stop - first };
-            let step = defined.find(247)?.filter(|step| *step != 0.0);
-            let step = step.unwrap_or(spread / f64::from(gaps));
-            (0..count)
-                .map(|k| turned(middle, first + f64::from(k) * step, [radius, 0.0]))
-                .collect()
-        } else {
-            let (columns, rows) = (count(242)?, count(243)?);
-            if columns.saturating_mul(rows) > MOST_PLACES {
-                let problem = NcProblem::value("the number of places of cycle 221", columns * rows, "at most 10000");
-                return Err(defined.fail(problem));
-            }
-            let (start, angle) = ([defined.span(225)?, defined.span(226)?], defined.number(224)?);
-            let apart = [defined.span(237)?, defined.span(238)?];
-            (0..columns * rows)
-                .map(|k| {
-                    let (row, column) = (k / columns, k % columns);
-                    let column = if row % 2 == 0 { column } else { columns - 1 - column };
-                    turned(start, angle, [f64::from(column) * apart[0], f64::from(row) * apart[1]])
-                })
-                .collect()
-        };
-        let cycle = match self.cycles.block.clone() {
-            Some((number, mut block)) => {
-                // The first of two is the one that counts.
-                block.tokens.splice(3..3, line.tokens.iter().skip(3).cloned());
-                self.define(number, &block)?
-            }
-            None => return Err((NcProblem::syntax("a pattern without a cycle before it"), line.all())),
-        };
-        let whole = |problem| (problem, line.all());
-        let [u, v, _] = self.modes.plane;
-        for [a, b] in places {
-            self.track.use_offset(&mut self.frames.work).map_err(whole)?;
-            match self.track.known() {
-                Some(mut at) => {
-                    (at[u], at[v]) = (a, b);
-                    self.track.line(at, self.track.abc, true).map_err(whole)?;
-                }
-                None => (self.track.xyz[u], self.track.xyz[v]) = (Some(a), Some(b)),
-            }
-            self.track
-                .cycle_here(&cycle, self.modes.plane, self.uncertain)
-                .map_err(whole)?;
-        }
-        Ok(())
     }
 }

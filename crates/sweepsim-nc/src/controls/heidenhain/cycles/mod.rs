@@ -3,4 +3,5 @@
 mod contours;
 mod define;
 mod holes;
+mod patterns;
 mod shapes;

@@ -4,15 +4,13 @@
 //! [the others](super::UNCHECKED) no manual was at hand.
 
 use super::arguments::Arguments;
-use crate::controls::run::Running;
+use crate::controls::contour;
 use crate::controls::siemens::interpreter::{Level, Reader};
 use crate::controls::siemens::language::structures::Search;
 use crate::controls::siemens::state::NamedContour;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
 
-/// The most blocks of a contour.
-const MOST_BLOCKS: usize = 100_000;
 /// The step between lines where none is given, in radii of the tool.
 const WIDE: f64 = 1.6;
 
@@ -94,30 +92,22 @@ impl Reader<'_> {
                 (start, self.routines[routine].find(last, start, Search::Forward)?)
             }
         };
-        self.track.record_moves().map_err(fail)?;
-        let depth = self.stack.len();
-        let motion = self.modes.motion;
+        let (depth, motion) = (self.stack.len(), self.modes.motion);
         let mut level = Level::new(routine, std::collections::BTreeMap::new(), 1);
         level.next = next;
-        self.stack.push(level);
-        let mut ran = Ok(());
-        for _ in 0..MOST_BLOCKS {
-            let ended = self.stack.get(depth).is_none_or(|level| level.next >= end) && self.stack.len() <= depth + 1;
-            if ended || self.stack.len() <= depth {
-                break;
-            }
-            let Some(at) = self.advance() else { break };
-            ran = self.run(at);
-            if ran.is_err() {
-                break;
-            }
-        }
-        self.stack.truncate(depth);
-        (self.modes.motion, self.ended) = (motion, false);
-        let recorded = self.track.recorded();
-        ran?;
-        let recorded = recorded.map_err(fail)?;
-        Course::of(&recorded.strokes, self.modes.plane, recorded.left).map_err(fail)
+        contour::course(
+            self,
+            self.modes.plane,
+            |reader| reader.stack.push(level),
+            |reader| match reader.stack.get(depth) {
+                None => false,
+                Some(level) => level.next < end || reader.stack.len() > depth + 1,
+            },
+            |reader| {
+                reader.stack.truncate(depth);
+                (reader.modes.motion, reader.ended) = (motion, false);
+            },
+        )
     }
 }
 

@@ -1,7 +1,8 @@
 //! Milling cycles.
 //!
 //! Sources: the order of the parameters is that of *SINUMERIK 840D sl/828D, Programming Guide Cycles*, as other readers of these programs have it too: POCKET3 was
-//! compared with two of them. For [SLOT2](super::UNCHECKED) no manual was at hand.
+//! compared with two of them, SLOT2 with the list of calls of an editor (*cnc-sinumerik* for VS Code), which has the
+//! names of all its parameters in this order.
 
 use super::arguments::Arguments;
 use crate::controls::siemens::interpreter::Reader;

@@ -13,4 +13,4 @@ pub(super) use milling::{MILLING, workpiece};
 pub(super) use patterns::PATTERNS;
 
 /// Cycles of which no manual was at hand: the order of their parameters is that of posts and other readers.
-pub(super) const UNCHECKED: [&str; 5] = ["CYCLE62", "CYCLE63", "CYCLE70", "CYCLE78", "SLOT2"];
+pub(super) const UNCHECKED: [&str; 4] = ["CYCLE62", "CYCLE63", "CYCLE70", "CYCLE78"];
