@@ -252,3 +252,51 @@ impl Position {
         }
     }
 }
+
+/// Refuses a number that is no good.
+pub(super) fn check(
+    what: impl Fn() -> String,
+    found: f64,
+    good: bool,
+    expected: &'static str,
+) -> Result<(), MachineError> {
+    if good {
+        return Ok(());
+    }
+    Err(MachineError::Value {
+        what: what(),
+        found: found.to_string(),
+        expected,
+    })
+}
+
+/// The numbers that both kinds of axes have.
+pub(super) fn check_axis(
+    letter: char,
+    limits: Option<[f64; 2]>,
+    rates: [Option<f64>; 3],
+    start: f64,
+) -> Result<(), MachineError> {
+    if let Some([least, largest]) = limits {
+        let ordered = least < largest && least.is_finite() && largest.is_finite();
+        if !ordered {
+            return Err(MachineError::Value {
+                what: format!("the limits of {letter}"),
+                found: format!("({least}, {largest})"),
+                expected: "two numbers, the lower one first",
+            });
+        }
+    }
+    for (rate, name) in rates.into_iter().zip(["speed", "acceleration", "rapid_acceleration"]) {
+        if let Some(rate) = rate {
+            let good = rate > 0.0 && rate.is_finite();
+            check(|| format!("the {name} of {letter}"), rate, good, "a positive number")?;
+        }
+    }
+    check(
+        || format!("the start of {letter}"),
+        start,
+        start.is_finite(),
+        "a number",
+    )
+}

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 use sweepsim_motion::{Pose, PoseError};
 
-use super::description::{LinearAxis, MachineDescription, Position, Rapid, RotaryAxis};
+use super::description::{LinearAxis, MachineDescription, Position, Rapid, RotaryAxis, check, check_axis};
 use super::error::MachineError;
 use super::rotaries::{Rotaries, rotation};
 
@@ -59,17 +59,6 @@ impl Joint {
     }
 }
 
-fn check(what: impl Fn() -> String, found: f64, good: bool, expected: &'static str) -> Result<(), MachineError> {
-    if good {
-        return Ok(());
-    }
-    Err(MachineError::Value {
-        what: what(),
-        found: found.to_string(),
-        expected,
-    })
-}
-
 fn direction(what: impl Fn() -> String, vector: [f64; 3]) -> Result<Unit<Vector3<f64>>, MachineError> {
     let largest = vector
         .iter()
@@ -82,32 +71,6 @@ fn direction(what: impl Fn() -> String, vector: [f64; 3]) -> Result<Unit<Vector3
         });
     }
     Ok(Unit::new_normalize(Vector3::from(vector) / largest))
-}
-
-/// The numbers that both kinds of axes have.
-fn check_axis(letter: char, limits: Option<[f64; 2]>, rates: [Option<f64>; 3], start: f64) -> Result<(), MachineError> {
-    if let Some([least, largest]) = limits {
-        let ordered = least < largest && least.is_finite() && largest.is_finite();
-        if !ordered {
-            return Err(MachineError::Value {
-                what: format!("the limits of {letter}"),
-                found: format!("({least}, {largest})"),
-                expected: "two numbers, the lower one first",
-            });
-        }
-    }
-    for (rate, name) in rates.into_iter().zip(["speed", "acceleration", "rapid_acceleration"]) {
-        if let Some(rate) = rate {
-            let good = rate > 0.0 && rate.is_finite();
-            check(|| format!("the {name} of {letter}"), rate, good, "a positive number")?;
-        }
-    }
-    check(
-        || format!("the start of {letter}"),
-        start,
-        start.is_finite(),
-        "a number",
-    )
 }
 
 impl Kinematics {

@@ -1,6 +1,7 @@
 //! What is proven at every time of the program and in every place: nothing depends on the lines of the dexels.
 
 mod bodies;
+mod crowd;
 mod excess;
 mod machine;
 mod process;

@@ -3,13 +3,15 @@
 //! The judge has its own chain of turns and shifts, and its own distance of convex hulls: their closest points by the
 //! steps of M. Frank and P. Wolfe (1956), which bound it from both sides.
 
-use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
-use std::collections::BTreeSet;
+mod judge;
+
+use judge::Judge;
+
 use std::fmt::Write;
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::Tool;
 use sweepsim_job::{DialectOptions, Judging, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
-use sweepsim_nc::{BodyShape, Carries, Machine, MachineDescription};
+use sweepsim_nc::Machine;
 
 const SIZES: &str = ",table=300,travel=600x500x500,zero=50,length=100";
 const MACHINES: [&str; 6] = [
@@ -22,167 +24,6 @@ const MACHINES: [&str; 6] = [
 ];
 /// Steps of the judge in each move.
 const STEPS: usize = 60;
-
-/// A body as points whose hull it is.
-struct Hull {
-    name: String,
-    link: usize,
-    points: Vec<Vector3<f64>>,
-}
-
-fn circle(base: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
-    let side = axis.cross(&Vector3::new(0.3, 0.5, 0.8)).normalize();
-    let (u, v) = (side * radius, axis.normalize().cross(&side) * radius);
-    (0..48)
-        .map(|k| f64::from(k) * std::f64::consts::TAU / 48.0)
-        .map(|t| base + u * t.cos() + v * t.sin())
-        .collect()
-}
-
-fn corners(min: [f64; 3], max: [f64; 3]) -> Vec<Vector3<f64>> {
-    (0..8)
-        .map(|n| Vector3::from_fn(|k, _| if n >> k & 1 == 0 { min[k] } else { max[k] }))
-        .collect()
-}
-
-/// The machine as the judge sees it: joints from the part to the tool.
-struct Judge {
-    /// Letter, direction, a point of the axis, whether it carries the part.
-    joints: Vec<(char, Vector3<f64>, Vector3<f64>, bool)>,
-    hulls: Vec<Hull>,
-    /// The number of hulls that belong to the machine.
-    own: usize,
-    length: f64,
-}
-
-impl Judge {
-    fn new(machine: &MachineDescription, stock: [[f64; 3]; 2], radius: f64, height: f64) -> Self {
-        let rotary = |axis: &sweepsim_nc::RotaryAxis, part| {
-            (
-                axis.letter,
-                Vector3::from(axis.axis).normalize(),
-                Vector3::from(axis.pivot),
-                part,
-            )
-        };
-        let linear = |carries: Carries| {
-            let axes = machine.linear.iter().filter(move |axis| axis.carries == carries);
-            axes.map(move |axis| {
-                let along = Vector3::ith(axis.letter as usize - 'X' as usize, 1.0);
-                (axis.letter, along, Vector3::zeros(), carries == Carries::Part)
-            })
-        };
-        let mut joints: Vec<_> = machine.table.iter().map(|axis| rotary(axis, true)).collect();
-        joints.extend(linear(Carries::Part));
-        joints.extend(linear(Carries::Tool));
-        joints.extend(machine.head.iter().map(|axis| rotary(axis, false)));
-        let base = joints.iter().filter(|joint| joint.3).count();
-        let link = |on: &str| match joints.iter().position(|joint| joint.0.to_string() == on) {
-            Some(n) if joints[n].3 => n,
-            Some(n) => n + 1,
-            None => base,
-        };
-        let mut hulls: Vec<Hull> = Vec::new();
-        for body in &machine.bodies {
-            let points = match &body.shape {
-                BodyShape::Block { min, max } => corners(*min, *max),
-                BodyShape::Cylinder { from, to, radius } => {
-                    let (from, to) = (Vector3::from(*from), Vector3::from(*to));
-                    [from, to]
-                        .iter()
-                        .flat_map(|end| circle(*end, to - from, *radius))
-                        .collect()
-                }
-                other => panic!("{other:?}"),
-            };
-            let (name, link) = (body.name.clone(), link(&body.on));
-            hulls.push(Hull { name, link, points });
-        }
-        let own = hulls.len();
-        hulls.push(Hull {
-            name: "stock".into(),
-            link: 0,
-            points: corners(stock[0], stock[1]),
-        });
-        let ends = [0.0, height].map(|z| Vector3::new(0.0, 0.0, z - machine.tool_length));
-        let cutter = ends.iter().flat_map(|end| circle(*end, Vector3::z(), radius)).collect();
-        hulls.push(Hull {
-            name: "cutter of tool 1".into(),
-            link: joints.len(),
-            points: cutter,
-        });
-        Self {
-            joints,
-            hulls,
-            own,
-            length: machine.tool_length,
-        }
-    }
-
-    /// From the coordinates of a link to those of the part.
-    fn frame(&self, link: usize, [xyz, abc]: [[f64; 3]; 2]) -> Isometry3<f64> {
-        let mut all = Isometry3::identity();
-        for (letter, axis, pivot, _) in &self.joints[..link] {
-            all *= match letter {
-                'X' | 'Y' => Isometry3::from(Translation3::from(axis * xyz[*letter as usize - 'X' as usize])),
-                'Z' => Isometry3::from(Translation3::from(axis * (xyz[2] + self.length))),
-                _ => {
-                    let angle = abc[*letter as usize - 'A' as usize].to_radians();
-                    let turn = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(*axis), angle);
-                    Isometry3::rotation_wrt_point(turn, Point3::from(*pivot))
-                }
-            };
-        }
-        all
-    }
-
-    fn pairs(&self) -> Vec<(usize, usize)> {
-        let links: BTreeSet<usize> = self.hulls[..self.own].iter().map(|hull| hull.link).collect();
-        let mut pairs = Vec::new();
-        for a in 0..self.own {
-            for b in a + 1..self.hulls.len() {
-                let (i, j) = (self.hulls[a].link, self.hulls[b].link);
-                let between = links
-                    .iter()
-                    .filter(|link| (i.min(j)..=i.max(j)).contains(*link))
-                    .count();
-                if i != j && (b >= self.own || between > 2) {
-                    pairs.push((a, b));
-                }
-            }
-        }
-        pairs
-    }
-
-    /// Bounds of the distance of two hulls.
-    fn apart(&self, (a, b): (usize, usize), at: [[f64; 3]; 2]) -> [f64; 2] {
-        let seen = |n: usize| -> Vec<Vector3<f64>> {
-            let frame = self.frame(self.hulls[n].link, at);
-            self.hulls[n]
-                .points
-                .iter()
-                .map(|p| (frame * Point3::from(*p)).coords)
-                .collect()
-        };
-        let (p, q) = (seen(a), seen(b));
-        let nearest = |points: &[Vector3<f64>], u: &Vector3<f64>| {
-            *points.iter().min_by(|a, b| a.dot(u).total_cmp(&b.dot(u))).unwrap()
-        };
-        let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len() as f64;
-        let mut v = mean(&q) - mean(&p);
-        let mut low = f64::NEG_INFINITY;
-        for _ in 0..400 {
-            let s = nearest(&q, &v) - nearest(&p, &-v);
-            low = low.max(s.dot(&v) / v.norm());
-            if v.norm() - low < 0.02 || low > 5.0 {
-                break;
-            }
-            let way = s - v;
-            v += way * (-v.dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
-        }
-        [low, v.norm()]
-    }
-}
 
 /// Numbers of no pattern.
 struct Random(u64);
