@@ -47,6 +47,7 @@ fn what_was_not_looked_at_is_skipped() {
         "rapid: rapids through the real stock: it was guessed: needs --stock",
         "spindle: 0",
         "feed: 0",
+        "machine: needs a machine with bodies (--machine, or `machine` in the job)",
         "limit: needs a machine with limits (--machine, or `machine` in the job)",
     ];
     assert_eq!(cases(&ci), expected);
