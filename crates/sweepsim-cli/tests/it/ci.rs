@@ -284,6 +284,7 @@ fn the_page_on_continuous_integration_is_true() {
         "fixture",
         "spindle",
         "feed",
+        "machine",
         "limit",
         "unresolved",
         "input",
