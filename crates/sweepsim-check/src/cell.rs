@@ -1,8 +1,8 @@
 //! Cubes of space, with what of the surface is near them.
 //!
 //! A cell is a cube `H` around a centre, of half the size `h`. Its surroundings `H′` are the cube around the
-//! same centre of half the size `2h · AROUND`. A cell knows all of the surface in `H′`: the triangles, clipped
-//! to the somewhat larger cube of half the size `2h · CLIP`.
+//! same centre of half the size `AROUND h`: what is lifted from `H` by no more than `LIFT h` is in them. A cell knows
+//! all of the surface in `H′`: the triangles, clipped to the somewhat larger cube of half the size `CLIP h`.
 //!
 //! Clipping rounds. For each polygon that is kept there is one in the plane of its triangle whose corners are not
 //! farther than `error` from those kept, and which holds all of the triangle within the cube, shrunk by `error`: a
@@ -15,8 +15,10 @@ use crate::vector::{EPS, MORE, V3, dot_up, norm_up, scaled, sub, sum_up, unit};
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
-const AROUND: f64 = 1.0 + 7e-4;
-const CLIP: f64 = 1.0 + 9e-4;
+/// Nothing is lifted farther, in parts of half a cell.
+pub(crate) const LIFT: f64 = 0.125 + 1e-6;
+const AROUND: f64 = 1.1258;
+const CLIP: f64 = 1.126;
 /// Cells with more triangles near them keep the numbers of these only.
 const MOST_PIECES: usize = 256;
 
@@ -61,7 +63,7 @@ impl Cell {
         triangles: &[u32],
         error: f64,
     ) -> Self {
-        let reach = 2.0 * half * CLIP;
+        let reach = half * CLIP;
         let (mut corners, mut ends, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (k, number) in triangles.iter().enumerate() {
             let before = corners.len();
@@ -198,7 +200,7 @@ impl Cell {
 
     /// Half the size of the surroundings, from below.
     pub fn around(&self) -> f64 {
-        2.0 * self.half * AROUND * (2.0 - MORE)
+        self.half * AROUND * (2.0 - MORE)
     }
 
     /// That corner of the surroundings which is farthest along `n`, if it is outside.

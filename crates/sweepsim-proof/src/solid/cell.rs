@@ -54,13 +54,17 @@ pub(crate) const MOST_WAYS: usize = 8;
 const SAME_WAY: f64 = 0.999;
 /// Normals whose cosine with their mean is larger, all of them, make a smooth surface.
 const SMOOTH: f64 = 0.9;
-/// Surroundings are this much larger than twice the cell.
+/// A solid may be lifted by so many halves of a cell's size.
+pub(crate) const LIFT: f64 = 0.125;
+/// Surroundings are so much larger than the cell: whatever is lifted stays in them.
+const AROUND: f64 = 1.0 + LIFT;
+/// They are a little larger than that, for rounding.
 const MARGIN: f64 = 1e-3;
 
 impl Cell {
     /// `around`: what is near a cell that this one is in.
     pub fn new(centre: Vector3<f64>, half: f64, around: &Near, triangles: &[Triangle], distance: &DistanceTo) -> Self {
-        let reach = 2.0 * half * (1.0 + MARGIN);
+        let reach = AROUND * half * (1.0 + MARGIN);
         let clipped = |triangle: u32, corners: &[Vector3<f64>]| {
             let corners = clip(corners, &centre, reach)?;
             Some(Piece { triangle, corners })
@@ -194,7 +198,7 @@ impl Cell {
             for normal in normals {
                 let way = self.way_above(normal, triangles, &known.corners);
                 let depth = way.top + self.support(&-normal.vector);
-                if way.out && depth <= self.half && depth < known.depth.0 {
+                if way.out && depth <= LIFT * self.half && depth < known.depth.0 {
                     known.depth = (depth, known.ways.len());
                 }
                 known.ways.push(way);
@@ -244,7 +248,7 @@ impl Cell {
         let is_out = || {
             let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
             // Beyond the surroundings, there may be triangles that are not known here.
-            let is_near = (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN);
+            let is_near = (above - self.centre).amax() <= AROUND * self.half * (1.0 + MARGIN);
             is_near && is_outside(&above, self.pieces(), triangles) == Some(true)
         };
         let out = self.faces_up(triangles, (&normal, top)) || is_out();
@@ -263,7 +267,7 @@ impl Cell {
         let leads_up = |piece: &Piece| {
             let middle = piece.corners.iter().sum::<Vector3<f64>>() / piece.corners.len() as f64;
             let above = middle + normal * (top - normal.dot(&middle) + 0.5 * self.half * MARGIN);
-            (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN)
+            (above - self.centre).amax() <= AROUND * self.half * (1.0 + MARGIN)
         };
         let pieces = self.pieces();
         pieces.iter().all(|piece| cosine(piece) >= 0.0)
@@ -331,7 +335,13 @@ mod tests {
             .for_each(|corner| *corner = turned(*corner));
         let target = Target::new(&soup).expect("closed");
         let all = Near::Many((0..12).collect());
-        let cell = Cell::new(Vector3::zeros(), 0.5, &all, &target.triangles, &target.distance);
+        let cell = Cell::new(
+            Vector3::zeros(),
+            1.0 / AROUND,
+            &all,
+            &target.triangles,
+            &target.distance,
+        );
         let out = |direction: Vector3<f64>| {
             let normal = Normal::near(&direction).expect("a direction");
             cell.way(normal, &target.triangles).out
