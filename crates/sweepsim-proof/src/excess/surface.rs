@@ -269,7 +269,7 @@ mod tests {
 
     /// Whether some patch has an edge with two normals.
     fn has_edge(soup: &TriangleSoup, ends: [[f64; 3]; 2], normals: [[f64; 3]; 2]) -> bool {
-        let target = Target::new(soup).expect("closed");
+        let target = Target::new(soup, 0.1).expect("closed");
         let (ends, normals) = (ends.map(Vector3::from), normals.map(Vector3::from));
         Patch::around(&target.triangles).iter().flatten().any(|patch| {
             patch.corners.len() == 2

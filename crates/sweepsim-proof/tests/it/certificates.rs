@@ -2,7 +2,7 @@
 
 use crate::scenes::waves;
 use crate::trees::{after, nodes};
-use crate::walls::{LIMITS, cut, slot};
+use crate::walls::{LIFT, LIMITS, cut, slot};
 use sweepsim_check::{
     Certificate, Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, check, digest_of, packed,
 };
@@ -50,7 +50,7 @@ pub(crate) fn scene(
 }
 
 pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &Limits) -> Certified {
-    let target = Target::new(soup).expect("closed");
+    let target = Target::new(soup, LIFT).expect("closed");
     let solids = cover(tool, 0.01 * limits.depth);
     let cutter = Cutter::new(&solids, path, None);
     let found = deepest(&target, &[cutter], limits, true, &()).expect("not cancelled");
