@@ -23,9 +23,10 @@ impl Search<'_> {
         let mut open = vec![patch];
         while let Some(patch) = open.pop() {
             let Some((whole, middle)) = patch.points(self.distance) else {
+                self.found.patches += 1;
                 match patch.halves(self.distance, 0.0, &[]) {
-                    Some(halves) => self.halve(halves, &mut open),
-                    None => self.leave(&patch.corners),
+                    Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
+                    _ => self.leave(&patch.corners),
                 }
                 continue;
             };
