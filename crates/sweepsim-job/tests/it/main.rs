@@ -3,5 +3,6 @@
 mod certificates;
 mod ci;
 mod memory;
+mod quickstart;
 mod scope;
 mod walls;

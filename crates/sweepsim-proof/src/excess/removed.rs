@@ -239,10 +239,17 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
         });
     }
     // Where many are as deep, that with the axis nearest.
-    let order = |time: f64| of(time).0 + AXIS * from_axis(&stretch.at(time), point);
+    let order = |time: f64| {
+        let at = stretch.at(time);
+        let off = point - at.tip;
+        let along = off.dot(&at.axis);
+        let across = (off - at.axis * along).norm();
+        level.at([across, along]) + AXIS * across
+    };
     let step = 1.0 / TIMES as f64;
     let times = (0..=TIMES).map(|k| k as f64 * step);
-    let near = times.min_by(|a, b| order(*a).total_cmp(&order(*b))).unwrap_or(0.5);
+    let near = times.map(|time| (order(time), time)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let near = near.map_or(0.5, |(_, time)| time);
     of(lowest(
         order,
         [(near - step).max(0.0), (near + step).min(1.0)],
