@@ -18,8 +18,9 @@ const CELLS: usize = 300;
 /// As many pairs as `verify` looks at, in all and for each move.
 const PAIRS: [usize; 2] = [500_000, 400];
 
-const TRIANGLES: [usize; 4] = [6_000, 25_000, 100_000, 400_000];
-const MOVES: [usize; 5] = [1_000, 4_000, 16_000, 64_000, 256_000];
+/// With fewer, or with longer moves, chords alone would go too deep.
+const TRIANGLES: [usize; 4] = [25_000, 50_000, 100_000, 400_000];
+const MOVES: [usize; 4] = [4_000, 16_000, 64_000, 256_000];
 /// Of what the other one is plotted by.
 const USUAL: [usize; 2] = [100_000, 16_000];
 
