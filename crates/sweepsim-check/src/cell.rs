@@ -1,8 +1,9 @@
 //! Cubes of space, with what of the surface is near them.
 //!
 //! A cell is a cube `H` around a centre, of half the size `h`. Its surroundings `H′` are the cube around the
-//! same centre of half the size `2h · AROUND`. A cell knows all of the surface in `H′`: the triangles, clipped
-//! to the somewhat larger cube of half the size `2h · CLIP`.
+//! same centre of half the size `AROUND (h + l)`: what is lifted from `H` by no more than `l` is in them, which is what
+//! the certificate wants, but for `h/8 ≤ l ≤ h`. A cell knows all of the surface in `H′`: the triangles, clipped to the
+//! somewhat larger cube of half the size `CLIP (h + l)`.
 //!
 //! Clipping rounds. For each polygon that is kept there is one in the plane of its triangle whose corners are not
 //! farther than `error` from those kept, and which holds all of the triangle within the cube, shrunk by `error`: a
@@ -35,6 +36,8 @@ enum Near {
 pub(crate) struct Cell {
     pub centre: V3,
     pub half: f64,
+    /// What is wanted to be lifted.
+    wanted: f64,
     near: Near,
     /// The triangle of each piece.
     triangles: Vec<u32>,
@@ -47,21 +50,27 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The cube that is divided.
-    pub fn root(centre: V3, half: f64, surface: &Surface) -> Self {
+    /// The cube that is divided; `lift`: what may have to be lifted, so far.
+    pub fn root(centre: V3, half: f64, lift: f64, surface: &Surface) -> Self {
         let all = (0..surface.triangles.len() as u32).collect::<Vec<_>>();
-        Self::new((centre, half), surface, None, &all, 0.0)
+        Self::new((centre, half, lift), surface, None, &all, 0.0)
+    }
+
+    /// Nothing is lifted farther.
+    pub fn lift(&self) -> f64 {
+        self.wanted.clamp(0.125 * self.half, self.half)
     }
 
     /// `pieces`: of the cell that it is in; otherwise whole triangles.
     fn new(
-        (centre, half): (V3, f64),
+        (centre, half, lift): (V3, f64, f64),
         surface: &Surface,
         pieces: Option<(&[V3], &[u32])>,
         triangles: &[u32],
         error: f64,
     ) -> Self {
-        let reach = 2.0 * half * CLIP;
+        let own = Self::with((centre, half, lift), Near::Many, Vec::new(), 0.0);
+        let reach = (half + own.lift()) * CLIP;
         let (mut corners, mut ends, mut kept) = (Vec::new(), Vec::new(), Vec::new());
         for (k, number) in triangles.iter().enumerate() {
             let before = corners.len();
@@ -84,13 +93,14 @@ impl Cell {
             1..=MOST_PIECES => Near::Pieces { corners, ends },
             _ => Near::Many,
         };
-        Self::with((centre, half), near, kept, error)
+        Self::with((centre, half, lift), near, kept, error)
     }
 
-    fn with((centre, half): (V3, f64), near: Near, triangles: Vec<u32>, error: f64) -> Self {
+    fn with((centre, half, wanted): (V3, f64, f64), near: Near, triangles: Vec<u32>, error: f64) -> Self {
         Self {
             centre,
             half,
+            wanted,
             near,
             triangles,
             error,
@@ -128,7 +138,7 @@ impl Cell {
         };
         // Clipping must not be as inexact as the surroundings are larger.
         let error = self.error + 32.0 * EPS * surface.size;
-        if self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
+        if 0.5 * self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
             return Err("the cell is too small to be divided");
         }
         // Of some hundred bytes each; every sixteen corners count as another.
@@ -142,7 +152,7 @@ impl Cell {
             return Err("the proof takes too many cells");
         }
         Ok(child.get_or_init(|| {
-            let own = (centre, 0.5 * self.half);
+            let own = (centre, 0.5 * self.half, self.wanted);
             match &self.near {
                 Near::Nothing(outside) => Self::with(own, Near::Nothing(*outside), Vec::new(), 0.0),
                 Near::Many => Self::new(own, surface, None, &self.triangles, 0.0),
@@ -198,7 +208,7 @@ impl Cell {
 
     /// Half the size of the surroundings, from below.
     pub fn around(&self) -> f64 {
-        2.0 * self.half * AROUND * (2.0 - MORE)
+        (self.half + self.lift()) * AROUND * (2.0 - MORE)
     }
 
     /// That corner of the surroundings which is farthest along `n`, if it is outside.

@@ -130,7 +130,8 @@ fn depth(
     // Added with rounding: compared with room for it.
     let room = 4.0 * EPS * (surface.size + half);
     let holds = |k: usize| centre[k] - half <= low[k] - room && centre[k] + half >= high[k] + room;
-    if !(half > 0.0 && half.is_finite() && (0..3).all(holds)) {
+    let is_good = half > 0.0 && half.is_finite() && claim.lift >= 0.0;
+    if !(is_good && (0..3).all(holds)) {
         return Err("the cube of the certificate does not hold the solid".into());
     }
     // Each solid of each mover on all of its path, once: where one tree ends, the next begins.
@@ -155,7 +156,7 @@ fn depth(
     if !ends.is_empty() {
         return Err("there are trees of other paths or tools".into());
     }
-    let root = Cell::root(centre, half, surface);
+    let root = Cell::root(centre, half, claim.lift, surface);
     let one = |tree: &Tree, bytes: &[u8]| {
         let path = question.movers[tree.mover].0;
         let motions = &scene.paths[path][tree.first..tree.first + tree.count];

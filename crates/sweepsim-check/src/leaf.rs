@@ -11,10 +11,10 @@
 //! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`,
 //!   and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What
 //!   is above all planes in `H′` is convex and without surface: one place of it is outside of `T`, so all of it
-//!   is. If `|w| ≤ h`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
+//!   is. If `|w| ≤ l`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
 //!   multiple of it.
 //! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`,
-//!   as far as that is at most `h`; the smaller of both is at most their mean.
+//!   as far as that is at most `l`; the smaller of both is at most their mean.
 //!
 //! Depths of less than 0 are distances, with the other sign. If `max_S ⟨n, ·⟩ + r(−n) ≤ −d` for a unit vector `n` and
 //! all of the surface `S ∩ H`, `B` is at least `d` from it. So then
@@ -109,7 +109,7 @@ impl Near<'_> {
 
     /// The cell is not lifted by more than this: all that is lifted stays in the surroundings.
     fn farthest(&self) -> f64 {
-        self.cell.half * (1.0 + 1e-6)
+        self.cell.lift() * (1.0 + 1e-6)
     }
 
     /// Lifted along one normal.

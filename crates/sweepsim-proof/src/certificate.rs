@@ -172,6 +172,7 @@ pub fn depth_claim(
         bound: found.bound,
         witness,
         root: target.root(),
+        lift: target.lift(),
         covers,
         trees,
     })
@@ -192,6 +193,7 @@ pub fn distance_claim(
         bound: -found.bound,
         witness: None,
         root: target.root(),
+        lift: target.lift(),
         covers,
         trees,
     })
@@ -216,6 +218,7 @@ pub fn height_claim(scene: &Scene, question: &Question, cutters: Answering, left
         bound: left.bound,
         witness: None,
         root: ([0.0; 3], 0.0),
+        lift: 0.0,
         covers,
         trees: left.trees.iter().map(tree).collect(),
     })

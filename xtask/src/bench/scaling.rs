@@ -1,5 +1,7 @@
 //! How time and memory grow with moves, grid and threads: the plots of docs/performance.md.
 
+mod proofs;
+
 use super::clock::load;
 use super::{Clock, memory, on, programs, raster, shortest_by, table1, three_axis};
 use crate::plot::{Axis, Panel, Series, figure};
@@ -213,7 +215,7 @@ fn stored(table: &str) -> Vec<Curve> {
 type Measure = fn() -> Result<Vec<Curve>, String>;
 
 /// The figures, and what measures them.
-const FIGURES: [(&str, Measure); 5] = [
+const FIGURES: [(&str, Measure); 7] = [
     ("grid", by_grid),
     ("moves", by_moves),
     ("threads", by_threads),
@@ -223,6 +225,8 @@ const FIGURES: [(&str, Measure); 5] = [
     ("memory-grid", || {
         memory::by_grid().map(|runs| in_mib("memory-grid", "1,000 moves", &runs))
     }),
+    ("proofs", proofs::by_moves),
+    ("proofs-triangles", proofs::by_triangles),
 ];
 
 /// Measures the figures whose names contain `filter`, and writes `docs/performance.csv` and
@@ -300,6 +304,17 @@ pub fn scaling(filter: Option<&str>) -> Result<(), String> {
         &["threads"],
         &[threads],
         "Speed against the number of threads",
+    )?;
+    let seconds = |name: &str, title: &str, x: &str| panel(&curves, name, title, [x, "seconds, one thread"], true);
+    let proofs = [
+        seconds("proofs", "Proofs by moves, 100,000 triangles", "moves"),
+        seconds("proofs-triangles", "Proofs by triangles, 16,000 moves", "triangles"),
+    ];
+    draw(
+        "pictures/performance-proofs.svg",
+        &["proofs", "proofs-triangles"],
+        &proofs,
+        "Seconds of proofs on one thread against moves, and against the triangles of the target",
     )?;
     let memory = [
         panel(&curves, "memory", "Memory by moves", ["moves", "MiB at most"], true),

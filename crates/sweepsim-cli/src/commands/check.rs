@@ -36,6 +36,12 @@ fn summary(found: &CheckedCertificate, seconds: f64) -> Lines {
         let checked = &statement.checked;
         let nodes = words::counted(checked.nodes as u64, "node");
         lines.line("recomputed", &format!("{nodes} of the proof"));
+        if statement.measure == Measure::Height {
+            lines.line(
+                "assumed",
+                "the target's triangles do not cross: seen by the prover's code alone",
+            );
+        }
         if let Some(wrong) = &checked.wrong {
             lines.line("wrong", wrong);
         }

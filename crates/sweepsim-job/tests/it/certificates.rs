@@ -78,7 +78,7 @@ fn every_changed_byte_of_all_statements_is_refused() {
     let end = text.len() - ",\"digest\":\"\"}\n".len() - 64;
     let changed_file = folder.path().join("changed.json");
     let (mut refused, mut accepted) = (0, 0);
-    for number in (0..end).step_by(41) {
+    for number in (0..end).step_by(29) {
         let mut changed = text[..end].to_vec();
         changed[number] ^= 1 + (number % 7) as u8;
         let digest = digest_of(&changed);

@@ -4,6 +4,7 @@ mod certificates;
 mod ci;
 mod machine;
 mod memory;
+mod quickstart;
 mod registers;
 mod scope;
 mod walls;

@@ -127,8 +127,16 @@ pub(super) struct Removed<'a> {
 
 impl Removed<'_> {
     /// Which of some points were certainly removed by one and the same convex solid: if all of them, so was their hull.
-    /// `middle`: a point among them, around which the solid is chosen.
-    pub fn held(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Known {
+    /// `middle`: a point among them, around which the solid is chosen; `recent`: what held points near by, which may
+    /// hold these.
+    pub fn held(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, recent: Option<Holder>) -> Known {
+        if let Some(holder) = recent.and_then(|recent| self.held_again(points, middle, recent)) {
+            return Known {
+                held: points.iter().map(|_| true).collect(),
+                holder: Some(holder),
+                is_removed: true,
+            };
+        }
         let mut all = Vec::new();
         for (number, course) in self.courses.iter().enumerate() {
             course.candidates(number, points, middle, &mut all);
@@ -145,7 +153,7 @@ impl Removed<'_> {
             is_removed: all.iter().any(|own| own.level <= -self.margin),
         };
         for (number, candidate) in all.iter().enumerate() {
-            let (held, time) = self.held_by(points, candidate);
+            let (held, time) = self.held_by(points, (candidate.level_of, candidate.stretch, candidate.time));
             let is_whole = !held.contains(&false);
             if number == 0 || is_whole {
                 known.held = held;
@@ -167,16 +175,30 @@ impl Removed<'_> {
         known
     }
 
-    /// Which of some points a solid holds, and when, if it is not straight.
-    fn held_by(&self, points: &[Vector3<f64>], candidate: &Candidate) -> (Held, Option<f32>) {
-        let (level, stretch) = (candidate.level_of, candidate.stretch);
+    /// Whether what held other points holds these.
+    fn held_again(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, mut recent: Holder) -> Option<Holder> {
+        let course = &self.courses[recent.course];
+        let (level, stretch) = (&course.solids[recent.solid].level, &course.stretches[recent.stretch]);
+        if stretch.is_straight() {
+            let mut own = points.iter();
+            return own
+                .all(|point| is_inside(level, stretch, point, self.margin))
+                .then_some(recent);
+        }
+        let (held, time) = self.held_by(points, (level, stretch, quick(level, stretch, middle).1));
+        recent.time = time;
+        (!held.contains(&false)).then_some(recent)
+    }
+
+    /// Which of some points a solid holds, and when, if it is not straight: about a time.
+    fn held_by(&self, points: &[Vector3<f64>], (level, stretch, time): (&Level, &Stretch, f64)) -> (Held, Option<f32>) {
         if stretch.is_straight() {
             // The solid sweeps a convex one.
             let own = points.iter();
             let held = own.map(|point| is_inside(level, stretch, point, self.margin));
             (held.collect(), None)
         } else {
-            let time = best_time(level, stretch, points, candidate.time) as f32;
+            let time = best_time(level, stretch, points, time) as f32;
             let at = stretch.at(f64::from(time).min(1.0));
             let own = points.iter();
             let held = own.map(|point| level_at(level, &at, point) <= -self.margin);
@@ -217,10 +239,17 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
         });
     }
     // Where many are as deep, that with the axis nearest.
-    let order = |time: f64| of(time).0 + AXIS * from_axis(&stretch.at(time), point);
+    let order = |time: f64| {
+        let at = stretch.at(time);
+        let off = point - at.tip;
+        let along = off.dot(&at.axis);
+        let across = (off - at.axis * along).norm();
+        level.at([across, along]) + AXIS * across
+    };
     let step = 1.0 / TIMES as f64;
     let times = (0..=TIMES).map(|k| k as f64 * step);
-    let near = times.min_by(|a, b| order(*a).total_cmp(&order(*b))).unwrap_or(0.5);
+    let near = times.map(|time| (order(time), time)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let near = near.map_or(0.5, |(_, time)| time);
     of(lowest(
         order,
         [(near - step).max(0.0), (near + step).min(1.0)],

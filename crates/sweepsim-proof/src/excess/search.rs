@@ -34,7 +34,7 @@ pub struct Left {
 }
 
 /// As many distances are tried.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 16;
 /// What is far from the target need not be known better than this part of it.
 const SHARE: f64 = 1.0 / 64.0;
 /// The surface is divided into at least so many patches, so that all threads have work.
@@ -45,6 +45,8 @@ const LOOKS: [usize; 2] = [4, 64];
 const SAMPLED: usize = 64;
 /// As many looks in all: in later ones, what is left of the patches is for what is left of the surface.
 const MOST_LOOKS: usize = 6;
+/// So many patches are looked at one after the other: what held one may hold the next.
+const TOGETHER: usize = 64;
 /// Patches smaller than this part of the distance are not divided.
 const FINEST: f64 = 1e-3;
 /// As many open places are described, of each part of the surface.
@@ -250,12 +252,11 @@ impl Scene<'_> {
                     again.patches += found[number].patches;
                     found[number] = again;
                 }
+                if found.iter().any(|found| found.is_left) {
+                    return Some(found);
+                }
             }
             open.retain(|number| found[*number].open_count > 0);
-            // Around what is left there is always something open.
-            if found.iter().any(|found| found.is_left) {
-                break;
-            }
         }
         Some(found)
     }
@@ -269,25 +270,30 @@ impl Scene<'_> {
         monitor: &dyn Monitor,
     ) -> Option<Vec<Found>> {
         let (done, total) = (AtomicUsize::new(0), numbers.len());
-        let look = |number: &usize| {
-            if monitor.cancelled() {
-                return None;
+        let look = |numbers: &[usize]| {
+            let mut recent = None;
+            let mut all = Vec::with_capacity(numbers.len());
+            for number in numbers {
+                if monitor.cancelled() {
+                    return None;
+                }
+                let mut search = Search {
+                    scene: self,
+                    distance,
+                    known,
+                    finer,
+                    found: Found::default(),
+                    recent,
+                };
+                search.look(self.patches[*number].clone(), each);
+                recent = search.recent;
+                all.push(search.found);
             }
-            let mut search = Search {
-                scene: self,
-                distance,
-                known,
-                finer,
-                found: Found::default(),
-            };
-            search.look(self.patches[*number].clone(), each);
-            let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-            if done.is_multiple_of(64) || done == total {
-                monitor.advance(done, total);
-            }
-            Some(search.found)
+            monitor.advance(numbers.len() + done.fetch_add(numbers.len(), Ordering::Relaxed), total);
+            Some(all)
         };
-        numbers.par_iter().map(look).collect()
+        let all: Option<Vec<Vec<Found>>> = numbers.par_chunks(TOGETHER).map(look).collect();
+        Some(all?.into_iter().flatten().collect())
     }
 
     fn is_left(&self, point: &Vector3<f64>) -> bool {

@@ -31,46 +31,38 @@ impl Boxes {
         self.around_first(self.stretches, (low, high), visit)
     }
 
+    /// The same for the first stretches, so many.
+    pub fn around_first(
+        &self,
+        before: usize,
+        around: (&Vector3<f64>, &Vector3<f64>),
+        visit: &mut dyn FnMut(usize) -> bool,
+    ) -> bool {
+        self.each(before, around, |stretch, _| visit(stretch))
+    }
+
     /// The numbers of stretches whose boxes meet a box, at most so many: those in the middle of whose boxes it is.
     pub fn most_central(&self, low: &Vector3<f64>, high: &Vector3<f64>, most: usize) -> Vec<usize> {
-        let middle = (low + high).map(|c| (0.5 * c) as f32);
+        let middle = (low + high).map(|c| c as f32);
         let mut all: Vec<(f32, usize)> = Vec::new();
-        self.around(low, high, &mut |stretch| {
-            all.push((0.0, stretch));
+        self.each(self.stretches, (low, high), |stretch, own| {
+            let part = |k: usize| (middle[k] - own[k] - own[k + 3]) / (own[k + 3] - own[k]);
+            all.push(((0..3).map(|k| part(k) * part(k)).sum(), stretch));
             true
         });
         if all.len() > most {
-            for (off, stretch) in &mut all {
-                let own = &self.all[self.place_of(*stretch)];
-                let part = |k: usize| (2.0 * middle[k] - own[k] - own[k + 3]) / (own[k + 3] - own[k]);
-                *off = (0..3).map(|k| part(k).powi(2)).sum();
-            }
             all.select_nth_unstable_by(most, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             all.truncate(most);
         }
         all.into_iter().map(|(_, stretch)| stretch).collect()
     }
 
-    /// Where the box of a stretch is.
-    fn place_of(&self, stretch: usize) -> usize {
-        let (mut place, mut first, mut count) = (0, 0, self.stretches);
-        while count > 1 {
-            let half = count / 2;
-            if stretch < first + half {
-                (place, count) = (place + 1, half);
-            } else {
-                (place, first, count) = (place + 2 * half, first + half, count - half);
-            }
-        }
-        place
-    }
-
-    /// The same for the first stretches, so many.
-    pub fn around_first(
+    /// Visits the first stretches whose boxes meet a box, with these.
+    fn each(
         &self,
         before: usize,
         (low, high): (&Vector3<f64>, &Vector3<f64>),
-        visit: &mut dyn FnMut(usize) -> bool,
+        mut visit: impl FnMut(usize, &[f32; 6]) -> bool,
     ) -> bool {
         let low = low.map(|c| (c as f32).next_down());
         let high = high.map(|c| (c as f32).next_up());
@@ -88,7 +80,7 @@ impl Boxes {
                 let half = count / 2;
                 open.push((number + 2 * half, first + half, count - half));
                 open.push((number + 1, first, half));
-            } else if !visit(first) {
+            } else if !visit(first, own) {
                 return false;
             }
         }

@@ -60,7 +60,7 @@ impl Above<'_> {
         for (way, below) in ways.iter().zip(&mut below) {
             *below = self.below(&way.normal);
             let value = way.top + *below;
-            if way.out && value < best.value && value <= self.cell.half {
+            if way.out && value < best.value && value <= self.cell.lift {
                 (best.value, best.normal, best.reason) = (value, way.normal, of_one(way.written));
                 if value <= enough {
                     return best;
@@ -104,7 +104,7 @@ impl Above<'_> {
         }
         let mean = -0.5 * (a.normal + b.normal);
         let value = 0.5 * (a.top + b.top) + self.cell.support(&mean);
-        if value < best.value && value <= self.cell.half {
+        if value < best.value && value <= self.cell.lift {
             let off = 0.5 * (a.top - b.top - (a.normal - b.normal).dot(&self.cell.centre));
             let middle = self.cell.centre + a.normal * off / (1.0 - a.normal.dot(&b.normal)) * 2.0;
             *best = Depth {
@@ -152,7 +152,7 @@ impl Above<'_> {
             return;
         };
         let value = lift.norm();
-        if value >= best.value || value > half {
+        if value >= best.value || value > self.cell.lift {
             return;
         }
         // A point above all planes, within the surroundings.
@@ -198,7 +198,7 @@ impl Above<'_> {
                 break;
             }
         }
-        let better = value < best.value && value <= self.cell.half;
+        let better = value < best.value && value <= self.cell.lift;
         if better && self.cell.way(short, self.triangles).out {
             *best = Depth {
                 value,

@@ -60,6 +60,8 @@ pub(super) struct Search<'a> {
     /// How many pairs have been found.
     count: usize,
     trace: Trace,
+    /// The direction in which some point was found that is deeper than the limit.
+    down: Option<Vector3<f64>>,
 }
 
 impl<'a> Search<'a> {
@@ -73,6 +75,7 @@ impl<'a> Search<'a> {
             open: BinaryHeap::new(),
             count: 0,
             trace: Trace::new(wanted.recorded),
+            down: None,
         }
     }
 
@@ -98,9 +101,22 @@ impl<'a> Search<'a> {
             self.found.pairs += 1;
             self.visit(&pair);
         }
+        self.name_moves();
         let tree = self.trace.written(self.found.bound, self.wanted.allowance);
         self.found.trees.extend(tree);
         self.found
+    }
+
+    /// Where one move goes beyond the limit, others may: each is to be named.
+    fn name_moves(&mut self) {
+        let Some(down) = self.down else { return };
+        for (number, stretch) in self.run.stretches.iter().enumerate() {
+            for (end, t) in stretch.ends.iter().zip([0.0, 1.0]) {
+                if !self.found.moves.contains_key(&stretch.number) {
+                    self.look_at(number, t, &self.run.farthest(end, &down));
+                }
+            }
+        }
     }
 
     fn push(&mut self, (depth, node): (f64, u32), cell: &'a Cell, when: When) {
@@ -325,7 +341,9 @@ impl<'a> Search<'a> {
         };
         let (number, lowest) = during.farthest(&-depth.normal);
         let (stretch, t) = time(number);
-        self.look_at(stretch, t, &lowest);
+        if self.look_at(stretch, t, &lowest) > self.wanted.limit {
+            self.down = Some(-depth.normal);
+        }
         let Some(place) = depth.place else { return };
         let (first, last) = (0, during.ends.len() - 1);
         for number in [first, last] {
@@ -339,10 +357,11 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn look_at(&mut self, stretch: usize, t: f64, point: &Vector3<f64>) {
+    /// How deep a point is that the solid has at a time.
+    fn look_at(&mut self, stretch: usize, t: f64, point: &Vector3<f64>) -> f64 {
         let depth = self.target.depth((*point).into()) - self.wanted.allowance;
         if depth <= 0.0 {
-            return;
+            return depth;
         }
         let number = stretch;
         let stretch: &Stretch = &self.run.stretches[number];
@@ -359,6 +378,7 @@ impl<'a> Search<'a> {
         if depth > self.wanted.limit {
             self.found.take_move(witness);
         }
+        depth
     }
 
     fn leave(&mut self, pair: &Pair, depth: f64) {

@@ -144,7 +144,8 @@ pub struct Enclosed {
 
 /// So many moves are looked at together.
 pub(crate) const TOGETHER: usize = 64;
-/// At first, every part of the work looks at so many pairs.
+/// At first, about so many parts of the work, evenly, look at so many pairs.
+const SAMPLED: usize = 64;
 const FIRST_LOOK: usize = 512;
 /// Where there is room up to the limit, the enclosure need not be narrower than this part of it.
 const ROOM: f64 = 0.25;
@@ -168,8 +169,8 @@ pub fn deepest(
     let parts = parts(cutters);
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
-    // A first look everywhere: what it finds need not be found again. Then what is left, as well as is wanted; at last,
-    // only whether it is within the limit.
+    // A first look here and there: what it finds need not be found again. Then all that is left, as well as is wanted;
+    // at last, only whether it is within the limit.
     for look in 0..3 {
         let witnesses = found.iter().filter_map(|found| found.deepest.as_ref());
         let known = witnesses.map(|witness| witness.depth).fold(0.0, f64::max);
@@ -193,12 +194,14 @@ pub fn deepest(
             known,
             recorded,
         };
-        let own: Vec<_> = open.iter().map(|number| parts[*number].clone()).collect();
+        let step = if look == 0 { open.len().div_ceil(SAMPLED) } else { 1 };
+        let some: Vec<usize> = open.iter().copied().step_by(step.max(1)).collect();
+        let own: Vec<_> = some.iter().map(|number| parts[*number].clone()).collect();
         let again = look_at(target, cutters, (&own, limits), asked, monitor)?;
-        for (number, again) in open.iter().zip(again) {
+        for (number, again) in some.iter().zip(again) {
             found[*number] = again.after(std::mem::take(&mut found[*number]));
         }
-        open.retain(|number| !found[*number].open.is_empty());
+        open.retain(|number| found[*number].pairs == 0 || !found[*number].open.is_empty());
     }
     let mut all = Enclosed::default();
     let mut depths = Vec::new();

@@ -1,7 +1,7 @@
 //! Cubes of space, with what of a solid's surface is near them.
 //!
-//! A cell is a cube `H`; its surroundings `H′` are the cube of twice its size around the same centre. It knows the
-//! triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
+//! A cell is a cube `H`; its surroundings `H′` are a larger cube around the same centre, which holds whatever is lifted
+//! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
 
 use super::outside::is_outside;
 use super::polygon::{Piece, area, clip};
@@ -40,6 +40,9 @@ struct Known {
 pub(crate) struct Cell {
     pub centre: Vector3<f64>,
     pub half: f64,
+    /// So far something may be lifted off the cell: as far as is wanted, if that is neither little nor much for it.
+    pub lift: f64,
+    wanted: f64,
     pub near: Near,
     known: OnceLock<Known>,
     deepest: OnceLock<f64>,
@@ -54,13 +57,22 @@ pub(crate) const MOST_WAYS: usize = 8;
 const SAME_WAY: f64 = 0.999;
 /// Normals whose cosine with their mean is larger, all of them, make a smooth surface.
 const SMOOTH: f64 = 0.9;
-/// Surroundings are this much larger than twice the cell.
+/// A solid may be lifted by as much as is wanted, but by no less, and no more, than so many halves of a cell's size.
+const LIFT: [f64; 2] = [0.125, 1.0];
+/// Surroundings are a little larger than what may be lifted into, for rounding.
 const MARGIN: f64 = 1e-3;
 
 impl Cell {
-    /// `around`: what is near a cell that this one is in.
-    pub fn new(centre: Vector3<f64>, half: f64, around: &Near, triangles: &[Triangle], distance: &DistanceTo) -> Self {
-        let reach = 2.0 * half * (1.0 + MARGIN);
+    /// `around`: what is near a cell that this one is in; `lift`: so far something may have to be lifted.
+    pub fn new(
+        (centre, half): (Vector3<f64>, f64),
+        lift: f64,
+        around: &Near,
+        triangles: &[Triangle],
+        distance: &DistanceTo,
+    ) -> Self {
+        let with = |near: Near| Self::with((centre, half), lift, near);
+        let reach = with(Near::Outside).around();
         let clipped = |triangle: u32, corners: &[Vector3<f64>]| {
             let corners = clip(corners, &centre, reach)?;
             Some(Piece { triangle, corners })
@@ -76,7 +88,7 @@ impl Cell {
                 let own = |number: &u32| clipped(*number, &triangles[*number as usize].corners);
                 numbers.iter().filter_map(own).collect()
             }
-            Near::Inside | Near::Outside => return Self::with(centre, half, around.clone()),
+            Near::Inside | Near::Outside => return with(around.clone()),
         };
         let near = match pieces.len() {
             0 if depth(distance, &centre) < 0.0 => Near::Outside,
@@ -84,18 +96,25 @@ impl Cell {
             1..=MOST_PIECES => Near::Surface(pieces),
             _ => Near::Many(pieces.iter().map(|piece| piece.triangle).collect()),
         };
-        Self::with(centre, half, near)
+        with(near)
     }
 
-    fn with(centre: Vector3<f64>, half: f64, near: Near) -> Self {
+    fn with((centre, half): (Vector3<f64>, f64), wanted: f64, near: Near) -> Self {
         Self {
             centre,
             half,
+            lift: wanted.clamp(LIFT[0] * half, LIFT[1] * half),
+            wanted,
             near,
             known: OnceLock::new(),
             deepest: OnceLock::new(),
             children: OnceLock::new(),
         }
+    }
+
+    /// Half the size of the surroundings.
+    fn around(&self) -> f64 {
+        (self.half + self.lift) * (1.0 + MARGIN)
     }
 
     /// How many triangles are near.
@@ -141,14 +160,15 @@ impl Cell {
             let take = |left: usize| left.checked_sub(1 + self.pieces().len() / 8);
             left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
         }
-        let (centre, half) = (self.centre_of_child(octant), 0.5 * self.half);
-        Some(child.get_or_init(|| Self::new(centre, half, &self.near, triangles, distance)))
+        let own = (self.centre_of_child(octant), 0.5 * self.half);
+        Some(child.get_or_init(|| Self::new(own, self.wanted, &self.near, triangles, distance)))
     }
 
     /// Forgets all parts of cells with few triangles: how much is left.
     pub fn prune(&mut self) -> usize {
         if !matches!(self.near, Near::Many(_)) {
-            *self = Self::with(self.centre, self.half, std::mem::replace(&mut self.near, Near::Outside));
+            let near = std::mem::replace(&mut self.near, Near::Outside);
+            *self = Self::with((self.centre, self.half), self.wanted, near);
         }
         let own = 1 + self.pieces().len() / 8;
         let children = self
@@ -194,7 +214,7 @@ impl Cell {
             for normal in normals {
                 let way = self.way_above(normal, triangles, &known.corners);
                 let depth = way.top + self.support(&-normal.vector);
-                if way.out && depth <= self.half && depth < known.depth.0 {
+                if way.out && depth <= self.lift && depth < known.depth.0 {
                     known.depth = (depth, known.ways.len());
                 }
                 known.ways.push(way);
@@ -244,7 +264,7 @@ impl Cell {
         let is_out = || {
             let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
             // Beyond the surroundings, there may be triangles that are not known here.
-            let is_near = (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN);
+            let is_near = (above - self.centre).amax() <= self.around();
             is_near && is_outside(&above, self.pieces(), triangles) == Some(true)
         };
         let out = self.faces_up(triangles, (&normal, top)) || is_out();
@@ -263,7 +283,7 @@ impl Cell {
         let leads_up = |piece: &Piece| {
             let middle = piece.corners.iter().sum::<Vector3<f64>>() / piece.corners.len() as f64;
             let above = middle + normal * (top - normal.dot(&middle) + 0.5 * self.half * MARGIN);
-            (above - self.centre).amax() <= 2.0 * self.half * (1.0 + MARGIN)
+            (above - self.centre).amax() <= self.around()
         };
         let pieces = self.pieces();
         pieces.iter().all(|piece| cosine(piece) >= 0.0)
@@ -329,9 +349,9 @@ mod tests {
             .as_flattened_mut()
             .iter_mut()
             .for_each(|corner| *corner = turned(*corner));
-        let target = Target::new(&soup).expect("closed");
+        let target = Target::new(&soup, 0.5).expect("closed");
         let all = Near::Many((0..12).collect());
-        let cell = Cell::new(Vector3::zeros(), 0.5, &all, &target.triangles, &target.distance);
+        let cell = Cell::new((Vector3::zeros(), 0.5), 0.5, &all, &target.triangles, &target.distance);
         let out = |direction: Vector3<f64>| {
             let normal = Normal::near(&direction).expect("a direction");
             cell.way(normal, &target.triangles).out

@@ -25,6 +25,7 @@ pub struct Target {
     root: RwLock<Cell>,
     /// The cube that is divided: its centre, and half of its size.
     cube: (Vector3<f64>, f64),
+    lift: f64,
     pub(crate) distance: DistanceTo,
     /// How many more cells there may be.
     pub(crate) cells_left: AtomicUsize,
@@ -42,9 +43,12 @@ const KEPT: usize = 100_000;
 const TOGETHER: usize = 32;
 
 impl Target {
+    /// `lift`: how far something may have to be lifted out of it, about: a few times a limit of depths. It does not
+    /// matter for what is proven, but for how fast.
+    ///
     /// # Errors
     /// The triangles do not enclose a solid.
-    pub fn new(soup: &TriangleSoup) -> Result<Self, MeshError> {
+    pub fn new(soup: &TriangleSoup, lift: f64) -> Result<Self, MeshError> {
         soup.check_closed()?;
         let distance = DistanceTo::new(soup)?;
         let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
@@ -69,8 +73,9 @@ impl Target {
         let size = low.amax().max(high.amax());
         let (centre, half) = root(&low, &high);
         Ok(Self {
-            root: RwLock::new(Cell::new(centre, half, &all, &triangles, &distance)),
+            root: RwLock::new(Cell::new((centre, half), lift, &all, &triangles, &distance)),
             cube: (centre, half),
+            lift,
             is_whole: triangles.len() == soup.triangles.len(),
             triangles,
             distance,
@@ -90,6 +95,12 @@ impl Target {
     #[must_use]
     pub fn root(&self) -> ([f64; 3], f64) {
         (self.cube.0.into(), self.cube.1)
+    }
+
+    /// How far something may have to be lifted, about.
+    #[must_use]
+    pub fn lift(&self) -> f64 {
+        self.lift
     }
 
     /// Does a work in parts, some at a time, with the cells in between, and forgets these when they are many. What

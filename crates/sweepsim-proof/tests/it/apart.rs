@@ -2,6 +2,7 @@
 
 use crate::certificates::check_distance;
 use crate::scenes::{SceneOf, scene, target};
+use crate::walls::LIFT;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -15,7 +16,7 @@ const HEIGHT: f64 = 12.0;
 
 fn found(soup: &TriangleSoup, path: &Path, limits: &Limits) -> Closest {
     let (solid, tool) = (
-        Target::new(soup).expect("closed"),
+        Target::new(soup, LIFT).expect("closed"),
         Tool::flat(RADIUS, HEIGHT).expect("a tool"),
     );
     let solids = cover(&tool, 1e-3);
@@ -82,7 +83,7 @@ fn check(scene: &SceneOf, spacing: f64) -> Result<bool, TestCaseError> {
         away(&own) <= witness.depth + 1e-6 || witness.depth == 0.0,
         "{own} is not so near"
     );
-    prop_assert!(Target::new(&soup).expect("closed").depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
+    prop_assert!(Target::new(&soup, LIFT).expect("closed").depth(witness.place).abs() < 1e-9 || witness.depth == 0.0);
     let far = witness.depth - found.bound;
     let decided = found.bound >= limits.depth;
     prop_assert!(far <= limits.width.max(witness.depth / 32.0) + 1e-9 || decided || found.open_count > 0);

@@ -2,7 +2,7 @@
 
 use crate::scenes::waves;
 use crate::trees::{after, nodes};
-use crate::walls::{LIMITS, cut, slot};
+use crate::walls::{LIFT, LIMITS, cut, slot};
 use sweepsim_check::{
     Certificate, Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, check, digest_of, packed,
 };
@@ -50,7 +50,7 @@ pub(crate) fn scene(
 }
 
 pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &Limits) -> Certified {
-    let target = Target::new(soup).expect("closed");
+    let target = Target::new(soup, LIFT).expect("closed");
     let solids = cover(tool, 0.01 * limits.depth);
     let cutter = Cutter::new(&solids, path, None);
     let found = deepest(&target, &[cutter], limits, true, &()).expect("not cancelled");
@@ -169,7 +169,7 @@ fn what_is_accepted_after_a_change_is_true() {
     let end = text.len() - ",\"digest\":\"\"}\n".len() - 64;
     let (mut read, mut proven) = (0, 0);
     for number in 0..end {
-        for by in [1, 3, 4, 0x10] {
+        for by in [1, 2, 3, 4, 8, 0x10] {
             let mut changed = text[..end].to_vec();
             changed[number] ^= by;
             let digest = digest_of(&changed);

@@ -1,6 +1,7 @@
 //! Random tools, motions and targets, against dense samples.
 
 use crate::certificates::{certified, checked};
+use crate::walls::LIFT;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -217,7 +218,7 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
         return Err(TestCaseError::reject("no such arc"));
     };
     let soup = target(scene.target, scene.size);
-    let (solid, tool) = (Target::new(&soup).expect("closed"), tool(scene.tool));
+    let (solid, tool) = (Target::new(&soup, LIFT).expect("closed"), tool(scene.tool));
     let limits = Limits::new(0.02, 0.004, 400_000);
     let certified = certified(&soup, &tool, &path, &limits);
     let found = &certified.found;

@@ -2,7 +2,7 @@
 
 use crate::certificates::check_height;
 use crate::scenes::{radius_at, target, tool};
-use crate::walls::slot;
+use crate::walls::{LIFT, slot};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -23,7 +23,7 @@ fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
     };
     let solids = cover(tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
-    let solid = Target::new(target).expect("closed");
+    let solid = Target::new(target, LIFT).expect("closed");
     let left = highest(&solid, &stock, &[cutter], &LIMITS, true, &());
     let left = left.expect("a stock").expect("not cancelled");
     check_height((target, &stock), (tool, &cutter), &LIMITS, &left);
@@ -65,7 +65,7 @@ fn what_is_left_of_walls_and_floors_is_enclosed() {
 /// as far as it hangs together with the target. Whether anything is left, and whether nothing is open.
 fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Result<[bool; 2], TestCaseError> {
     let (soup, tool) = (target(kinds.0, size), tool(kinds.1));
-    let solid = Target::new(&soup).expect("closed");
+    let solid = Target::new(&soup, LIFT).expect("closed");
     let distance = DistanceTo::new(&soup).expect("few vertices");
     // The tip follows the top of the target as a ball would, roughly; the bound must hold however it goes.
     let top = |x: f64, y: f64| {
@@ -213,7 +213,7 @@ fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
     };
     // The corners between the sides are on the circle.
     let soup = pocket(16.0, 72, -7.0);
-    let target = Target::new(&soup).expect("closed");
+    let target = Target::new(&soup, LIFT).expect("closed");
     let limits = Limits::new(0.05, 0.005, 500_000);
     let found = highest(&target, &stock, &[cutter], &limits, true, &());
     let found = found.expect("a stock").expect("not cancelled");
@@ -247,7 +247,7 @@ fn what_is_undecided_has_a_place() {
         min: [-20.0, -12.0, -8.0],
         max: [20.0, 12.0, 1.0],
     };
-    let (solids, solid) = (cover(&tool, 1e-4), Target::new(&target).expect("closed"));
+    let (solids, solid) = (cover(&tool, 1e-4), Target::new(&target, LIFT).expect("closed"));
     let cutter = Cutter::new(&solids, &path, None);
     let (mut decided, mut open) = (0, 0);
     let shares = [0.5, 0.9, 0.99, 0.999, 1.0, 1.001, 1.01, 1.1, 1.2, 1.5, 2.0];

@@ -5,6 +5,8 @@ use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
 use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
 
+/// What goes too deep may have to be lifted so far, about.
+pub(crate) const LIFT: f64 = 0.05;
 pub(crate) const LIMITS: Limits = Limits::new(0.02, 0.002, 1_000_000);
 
 /// Blocks side by side, as a solid: they touch nowhere.
@@ -148,7 +150,7 @@ fn so_is_one_that_stands_on_the_floor() {
 #[test]
 fn threads_do_not_matter() {
     // A raster that digs into the floor by 0.03 mm, in four parts of the work.
-    let target = Target::new(&slot(-12.0, 12.0, 2.03)).expect("closed");
+    let target = Target::new(&slot(-12.0, 12.0, 2.03), LIFT).expect("closed");
     let tool = Tool::ball(3.0, 30.0).expect("a tool");
     let tip = |k: u32| [-35.0 + 70.0 * f64::from(k % 16) / 15.0, -8.0 + f64::from(k / 16), 2.0];
     let poses = (0..250).map(|k| Pose::new(tip(k), [0.0, 0.0, 1.0]).expect("a pose"));

@@ -229,6 +229,13 @@ impl<'a> AskedAll<'a> {
         }
     }
 
+    /// How deep something may go into an obstacle, of all statements about it.
+    pub fn deepest(&self, obstacle: usize) -> f64 {
+        let own = self.statements.iter().filter(|own| own.obstacles.contains(&obstacle));
+        let own = own.filter(|own| own.measure == Measure::Depth).map(|own| own.limit);
+        own.fold(0.0, f64::max)
+    }
+
     pub fn limits(&self, asked: &Asked) -> Limits {
         Limits {
             deviation: self.deviation,

@@ -24,6 +24,9 @@ use sweepsim_proof::{Cutter, Enclosed, OpenBox, Target, Witness, deepest, depth_
 /// As many open places are listed.
 const LISTED: usize = 100;
 
+/// What goes too deep may have to be lifted so many limits.
+const LIFTS: f64 = 2.5;
+
 /// A statement with the moves that were seen to break it.
 struct Proven {
     statement: Statement,
@@ -96,7 +99,7 @@ pub(super) fn statements(
         let solid = obstacle.triangles.as_ref().map_err(String::clone);
         (
             number,
-            solid.and_then(|soup| solids::of_mesh(soup, what)),
+            solid.and_then(|soup| solids::of_mesh(soup, what, LIFTS * proof.asked.deepest(number))),
             obstacle.setup,
         )
     };

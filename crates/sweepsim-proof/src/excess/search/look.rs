@@ -1,7 +1,7 @@
 //! The search in one patch.
 
 use super::super::record::{Record, key};
-use super::super::removed::Known;
+use super::super::removed::{Holder, Known};
 use super::super::surface::{Halved, Patch};
 use super::{FINEST, Found, MOST_OPEN, SHARE, STEPS, Scene};
 use nalgebra::Vector3;
@@ -14,6 +14,8 @@ pub(super) struct Search<'a> {
     /// Places that are not higher by so much are not looked for.
     pub finer: f64,
     pub found: Found,
+    /// What held the patch before.
+    pub recent: Option<Holder>,
 }
 
 impl Search<'_> {
@@ -21,9 +23,10 @@ impl Search<'_> {
         let mut open = vec![patch];
         while let Some(patch) = open.pop() {
             let Some((whole, middle)) = patch.points(self.distance) else {
+                self.found.patches += 1;
                 match patch.halves(self.distance, 0.0, &[]) {
-                    Some(halves) => self.halve(halves, &mut open),
-                    None => self.leave(&patch.corners),
+                    Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
+                    _ => self.leave(&patch.corners),
                 }
                 continue;
             };
@@ -38,8 +41,9 @@ impl Search<'_> {
                 mut held,
                 holder,
                 is_removed,
-            } = scene.removed.held(&points, &middle);
+            } = scene.removed.held(&points, &middle, self.recent);
             if let Some(holder) = holder {
+                self.recent = Some(holder);
                 self.record(|record| record.removed(holder));
                 continue;
             }
