@@ -90,6 +90,7 @@ fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
         text: None,
         tools: request.given.tools.clone(),
         bodies: request.given.bodies.clone(),
+        within: options.dialect.within.clone(),
     };
     let mut is_job = false;
     let (mut job, found, guessed) = match &request.input {
