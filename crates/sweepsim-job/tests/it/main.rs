@@ -2,6 +2,7 @@
 
 mod certificates;
 mod ci;
+mod given;
 mod memory;
 mod scope;
 mod walls;
