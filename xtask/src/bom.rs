@@ -1,7 +1,7 @@
 //! `cargo xtask bom`: what the command is made of, as a bill of materials in CycloneDX 1.6.
 //!
-//! Crates with their versions, licences and checksums, and who depends on whom: of all features, as built on this system,
-//! without what only builds or tests need. The same workspace gives the same bytes.
+//! Crates with their versions, licences and checksums, and who depends on whom: of all features, as built on this
+//! system, without what only builds or tests need. The same workspace gives the same bytes.
 
 use crate::workspace;
 use serde_json::{Value, json};

@@ -3,8 +3,8 @@
 //! This library exists only for the command's binary. In your own code, use [`sweepsim_job`], which does all that the
 //! command does.
 //!
-//! `arguments` parses the command line into requests, `commands` carries them out and says what was found,
-//! `mcp` does the same for agents, and `session` holds what they share: progress, interruption, output files, exit status.
+//! `arguments` parses the command line into requests, `commands` carries them out and says what was found, `mcp` does
+//! the same for agents, and `session` holds what they share: progress, interruption, output files, exit status.
 
 mod arguments;
 mod commands;

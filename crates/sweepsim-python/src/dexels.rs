@@ -1,14 +1,15 @@
 //! Material on lines, as arrays.
 
+use crate::arrays::{MeshArrays, arrays, read, rows};
 use crate::errors::{of_file, raised, wrong};
-use crate::solids::{MeshArrays, arrays, read, rows};
 use crate::watch::watched;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 use sweepsim_formats::{read_dexels_file, write_dexels_file};
-use sweepsim_job::dexel::{self, Grid, Interval, Source};
+use sweepsim_job::dexel::{self, Grid, Interval, Line, Source};
 use sweepsim_job::{JobError, Outcome};
 
 type Point = (f64, f64, f64);
@@ -47,28 +48,49 @@ impl Dexels {
         }
     }
 
-    /// A number for each interval, made of its line's number.
-    fn by_interval<T: Send>(&self, py: Python<'_>, one: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        let dexels = self.get();
-        py.detach(|| {
-            let mut all = Vec::with_capacity(dexels.count());
-            for (index, line) in dexels.iter() {
-                all.extend((0..line.len()).map(|_| one(index)));
-            }
-            all
-        })
-    }
-
     /// Two values for each interval, of its lower and its upper end.
-    fn by_end<T: Send>(&self, py: Python<'_>, one: impl Fn(dexel::End) -> T + Sync) -> Vec<[T; 2]> {
-        let dexels = self.get();
-        py.detach(|| {
-            let intervals = dexels.iter().flat_map(|(_, line)| line.iter());
-            intervals
-                .map(|interval| [one(interval.lower), one(interval.upper)])
-                .collect()
-        })
+    fn by_end<T: Copy + Send + Sync>(
+        &self,
+        py: Python<'_>,
+        zero: T,
+        one: impl Fn(dexel::End) -> T + Sync,
+    ) -> Vec<[T; 2]> {
+        let both = |interval: Interval| [one(interval.lower), one(interval.upper)];
+        py.detach(|| gathered(self.get(), [zero; 2], |_, line| line.iter().map(both)))
     }
+}
+
+/// Lines that one thread goes through at a time.
+const BLOCK: usize = 1 << 14;
+
+/// A value for each interval, in the order of the lines; `of_line` makes those of one. `zero` is any value.
+fn gathered<'a, T: Copy + Send + Sync, I: Iterator<Item = T>>(
+    dexels: &'a dexel::Dexels,
+    zero: T,
+    of_line: impl Fn(usize, Line<'a>) -> I + Sync,
+) -> Vec<T> {
+    let lines = dexels.grid().len();
+    let starts: Vec<usize> = (0..lines).step_by(BLOCK).collect();
+    let block = |start: usize| start..lines.min(start + BLOCK);
+    let count = |start: &usize| block(*start).map(|index| dexels.at(index).len()).sum();
+    let counts: Vec<usize> = starts.par_iter().map(count).collect();
+    let mut all = vec![zero; counts.iter().sum()];
+    let (mut rest, mut places) = (&mut all[..], Vec::with_capacity(counts.len()));
+    for count in counts {
+        let (own, after) = rest.split_at_mut(count);
+        places.push(own);
+        rest = after;
+    }
+    starts.into_par_iter().zip(places).for_each(|(start, own)| {
+        let mut own = own.iter_mut();
+        for index in block(start) {
+            // Values first: a place that has no value is not passed over.
+            for (value, place) in of_line(index, dexels.at(index)).zip(own.by_ref()) {
+                *place = value;
+            }
+        }
+    });
+    all
 }
 
 #[pymethods]
@@ -161,31 +183,26 @@ impl Dexels {
     #[getter]
     fn lines<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let grid = *self.get().grid();
-        let place = |index| {
+        let place = |index: usize, line: Line<'_>| {
             let (i, j) = grid.place(index);
-            [i as u32, j as u32]
+            std::iter::repeat_n([i as u32, j as u32], line.len())
         };
-        rows(py, self.by_interval(py, place))
+        rows(py, py.detach(|| gathered(self.get(), [0; 2], place)))
     }
 
     /// The lower and the upper end of each interval, in millimetres (n × 2). Exact.
     #[getter]
     fn intervals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let dexels = self.get();
-        let ends = py.detach(|| {
-            let mut ends = Vec::with_capacity(dexels.count());
-            for (_, line) in dexels.iter() {
-                ends.extend(line.heights());
-            }
-            ends
-        });
-        rows(py, ends)
+        rows(
+            py,
+            py.detach(|| gathered(self.get(), [0.0; 2], |_, line| line.heights())),
+        )
     }
 
     /// The unit normals at both ends, out of the material (n × 2 × 3), to within 6.5e-5.
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        let normals = self.by_end(py, |end| end.normal);
+        let normals = self.by_end(py, [0.0; 3], |end| end.normal);
         let count = normals.len();
         let numbers = normals.into_flattened().into_flattened();
         numbers.into_pyarray(py).reshape([count, 2, 3])
@@ -198,7 +215,7 @@ impl Dexels {
             Source::Cut { path, segment, .. } => [i64::from(path), i64::from(segment)],
             Source::Stock => [-1; 2],
         };
-        let moves = self.by_end(py, cut);
+        let moves = self.by_end(py, [0; 2], cut);
         let count = moves.len();
         let numbers = moves.into_flattened().into_flattened();
         numbers.into_pyarray(py).reshape([count, 2, 2])
@@ -208,13 +225,9 @@ impl Dexels {
     #[getter]
     fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let dexels = self.get();
-        let counts = py.detach(|| {
-            let mut counts = vec![0; dexels.grid().len()];
-            dexels
-                .iter()
-                .for_each(|(index, line)| counts[index] = line.len() as u32);
-            counts
-        });
+        let lines = dexels.grid().len();
+        let count = |index| dexels.at(index).len() as u32;
+        let counts: Vec<u32> = py.detach(|| (0..lines).into_par_iter().with_min_len(BLOCK).map(count).collect());
         let counts: Bound<'_, PyArray1<u32>> = counts.into_pyarray(py);
         counts.reshape(dexels.grid().cells())
     }

@@ -1,6 +1,7 @@
 //! The native half of the Python package `sweepsim`: all that computes. The other half, in `python/sweepsim`, makes
 //! requests of arguments, and objects of reports.
 
+mod arrays;
 mod compare;
 mod dexels;
 mod errors;

@@ -1,8 +1,9 @@
 //! A request carried out.
 
+use crate::arrays::{MeshArrays, arrays};
 use crate::dexels::Dexels;
 use crate::errors::{raised, wrong};
-use crate::solids::{MeshArrays, Solid, arrays, soup};
+use crate::solids::{Solid, soup};
 use crate::tools::Tool;
 use crate::watch::watched;
 use pyo3::prelude::*;

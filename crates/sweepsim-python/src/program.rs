@@ -1,7 +1,7 @@
 //! Programs as arrays.
 
+use crate::arrays::rows;
 use crate::errors::{raised, wrong};
-use crate::solids::rows;
 use crate::watch::watched;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;

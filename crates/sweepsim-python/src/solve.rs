@@ -1,7 +1,7 @@
 //! Systems of equations.
 
+use crate::arrays::rows_of;
 use crate::errors::wrong;
-use crate::solids::rows_of;
 use crate::watch::watched;
 use numpy::PyArray2;
 use pyo3::prelude::*;

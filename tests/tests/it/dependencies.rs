@@ -38,7 +38,10 @@ const BANNED: [(&str, &str); 7] = [
 
 /// Crates that are out of place but for the protocol that agents speak, which only the command does; and why.
 const FOR_AGENTS: [(&str, &str); 2] = [
-    ("tokio", "work is divided by rayon; there is nothing to wait for but a question"),
+    (
+        "tokio",
+        "work is divided by rayon; there is nothing to wait for but a question",
+    ),
     ("chrono", "results do not depend on the time of day"),
 ];
 
@@ -233,7 +236,10 @@ fn what_agents_need_is_for_agents_alone() {
             assert!(!reached.contains(name), "{library} needs {name}: {why}");
         }
     }
-    assert!(below("sweepsim-cli", &uses).contains("tokio"), "nobody speaks to agents");
+    assert!(
+        below("sweepsim-cli", &uses).contains("tokio"),
+        "nobody speaks to agents"
+    );
 }
 
 #[test]

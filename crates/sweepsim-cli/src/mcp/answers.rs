@@ -142,7 +142,9 @@ pub(super) fn of_section(found: &PlaneSection) -> Answer {
         left = left.checked_sub(line.len())?;
         Some(line)
     });
-    let listed: Vec<_> = listed.collect();
+    // Beyond the accuracy of the curves, digits tell nothing.
+    let rounded = |point: &[f64; 3]| point.map(|c| (c * 1e6).round() / 1e6);
+    let listed: Vec<Vec<[f64; 3]>> = listed.map(|line| line.iter().map(rounded).collect()).collect();
     let unresolved: Vec<String> = found.unresolved().take(MOST).collect();
     let text = format!(
         "{} in the plane, {} of the outline{}",

@@ -193,7 +193,8 @@ impl Request {
         Self { cells, ..self }
     }
 
-    /// The side of the cells in millimetres, or nearly so, instead of the job's: a whole number of them covers the grid.
+    /// The side of the cells in millimetres, or nearly so, instead of the job's: a whole number of them covers the
+    /// grid.
     #[must_use]
     pub fn cell(self, side: impl Into<Option<f64>>) -> Self {
         let cell = side.into();
