@@ -16,7 +16,7 @@ type Point = (f64, f64, f64);
 
 /// Who owns the dexels.
 enum Owner {
-    Dexels(dexel::Dexels),
+    Dexels(Box<dexel::Dexels>),
     /// They are the part.
     Outcome(Arc<Outcome>),
 }
@@ -31,7 +31,7 @@ pub(crate) struct Dexels(Owner);
 
 impl From<dexel::Dexels> for Dexels {
     fn from(dexels: dexel::Dexels) -> Self {
-        Self(Owner::Dexels(dexels))
+        Self(Owner::Dexels(dexels.into()))
     }
 }
 

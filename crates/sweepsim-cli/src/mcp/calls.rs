@@ -10,12 +10,21 @@ use serde_json::{Map, Value};
 use std::path::Path;
 use sweepsim_job::{
     CompareRequest, DeviationLimits, DialectOptions, JobError, Judging, Output, ProgramOptions, Request, StockOption,
-    Task, describe,
+    Task, ViewOptions, describe,
 };
 use sweepsim_nc::{Machine, is_within};
 
 /// Lines closer than this share of the default limits are drawn no better.
 const CHORD: f64 = 0.01;
+
+/// Pictures of this size are seen well enough, and are not long messages.
+const PICTURE: [usize; 2] = [800, 600];
+
+fn view() -> ViewOptions {
+    let mut view = ViewOptions::default();
+    view.size = PICTURE;
+    view
+}
 
 /// Why a call has no answer: in words that help the agent.
 #[derive(Debug)]
@@ -128,6 +137,7 @@ fn asked(program: &Program, target: Option<&str>, root: &Path) -> Result<Request
     Ok(Request::from_file(confined(&program.path, root)?)
         .program(options)
         .cell(program.cell)
+        .view(view())
         .outputs([Output::Picture]))
 }
 
@@ -146,6 +156,7 @@ fn inspect(asked: &Inspect, root: &Path) -> Result<Answer, Refusal> {
 
 fn compare(asked: &Compare, root: &Path, limit: &Limit) -> Result<Answer, Refusal> {
     let mut request = CompareRequest::new(confined(&asked.part, root)?, confined(&asked.target, root)?);
+    request.view = view();
     if asked.gouge.is_some() || asked.excess.is_some() {
         let both = [asked.gouge, asked.excess].map(|limit| limit.unwrap_or(0.1));
         if !both.iter().all(|limit| *limit >= 0.0 && limit.is_finite()) {

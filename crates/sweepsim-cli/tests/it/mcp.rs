@@ -141,7 +141,7 @@ fn a_program_is_judged_and_shown() {
             "{words}"
         );
         let decoder = png::Decoder::new(std::io::Cursor::new(image(&content)));
-        assert!(decoder.read_info().unwrap().info().width > 500);
+        assert_eq!(decoder.read_info().unwrap().info().size(), (800, 600));
 
         let asked = json!({"path": "bracket.nc", "stock": "block:0,0,-24,100,60,0", "cell": 1.0, "picture": false});
         let (data, content) = served.data("simulate_program", asked).await;
