@@ -1,6 +1,7 @@
 //! Maintenance commands of the workspace: `cargo xtask --help`.
 
 mod bench;
+mod bom;
 mod browser;
 mod cluster;
 mod generate;
@@ -128,6 +129,8 @@ enum Command {
         #[arg(long)]
         as_built: bool,
     },
+    /// Prints what the command is made of, as a bill of materials in CycloneDX 1.6.
+    Bom,
     /// Runs .ci/run, which must pass before a change is integrated.
     Ci,
 }
@@ -230,6 +233,10 @@ fn main() -> ExitCode {
         Command::Cluster => cluster::run(),
         Command::Shards { plot, as_built } if cfg!(debug_assertions) && !plot && !as_built => in_release(),
         Command::Shards { plot, .. } => cluster::measure(plot),
+        Command::Bom => bom::bom().map(|text| {
+            print!("{text}");
+            true
+        }),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())

@@ -59,11 +59,11 @@ fn about<E: std::fmt::Display>(what: &str) -> impl Fn(E) -> String + '_ {
     move |error| format!("{what}: {error}")
 }
 
-/// Whether others may depend on it: the command's library is for its own tests.
+/// Whether others may depend on it: the command's library is for its own tests, that of the Python package for Python.
 fn published_library(folder: &Path) -> Result<bool, String> {
     let manifest: io::Result<String> = fs::read_to_string(folder.join("Cargo.toml"));
     let manifest = manifest.map_err(about("Cargo.toml"))?;
-    Ok(!manifest.contains("[[bin]]"))
+    Ok(!manifest.contains("[[bin]]") && !manifest.contains("publish = false"))
 }
 
 fn manifest(name: &str, folder: &Path) -> String {

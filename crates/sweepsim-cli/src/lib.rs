@@ -3,11 +3,13 @@
 //! This library exists only for the command's binary. In your own code, use [`sweepsim_job`], which does all that the
 //! command does.
 //!
-//! `arguments` parses the command line into requests, `commands` carries them out and says what was found, and
-//! `session` holds what they share: progress, interruption, output files, exit status.
+//! `arguments` parses the command line into requests, `commands` carries them out and says what was found, `mcp` does
+//! the same for agents, and `session` holds what they share: progress, interruption, output files, exit status.
 
 mod arguments;
 mod commands;
+#[cfg(feature = "mcp")]
+mod mcp;
 mod session;
 
 use arguments::{Arguments, Command};
@@ -43,6 +45,8 @@ pub fn main() -> ExitCode {
         Command::Compare(options) => commands::compare(&options).map(|()| ExitCode::SUCCESS),
         Command::Merge(options) => commands::merge(&options),
         Command::Check(options) => commands::check(&options),
+        #[cfg(feature = "mcp")]
+        Command::Mcp(options) => mcp::serve(&options),
         Command::Completions(options) => commands::completions(&options).map(|()| ExitCode::SUCCESS),
         Command::Man(options) => commands::man(&options).map(|()| ExitCode::SUCCESS),
     };

@@ -58,6 +58,7 @@ pub use model::usage::ToolUsage;
 pub use read::{read_file, read_text};
 pub use sweepsim_motion::RotaryTable;
 pub use text::assumption::Assumption;
+pub use text::confined::is_within;
 pub use text::error::{NcError, NcProblem, TextPosition, shortened};
 pub use text::lines::end_lines_at_returns;
 pub use text::numbers::shortest;

@@ -14,6 +14,7 @@ use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::table::rows;
+use crate::text::confined::is_within;
 use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::text::lines;
 use crate::{apt, gcode, table};
@@ -136,7 +137,7 @@ fn read_bytes(
         if missing.borrow().contains(name) {
             return None;
         }
-        let found = beside(file, name, extensions);
+        let found = beside(file, name, extensions, options.within.as_deref());
         if found.is_none() {
             missing.borrow_mut().insert(name.to_owned());
         }
@@ -196,7 +197,7 @@ fn unit(options: &ReadOptions) -> f64 {
 }
 
 /// A program of this name beside another, in capitals or not; the first of several extensions.
-fn beside(file: Option<&Path>, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
+fn beside(file: Option<&Path>, name: &str, extensions: &[&str], within: Option<&Path>) -> Option<(PathBuf, String)> {
     let file = file?;
     // Names that could lead elsewhere are none.
     if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
@@ -213,6 +214,9 @@ fn beside(file: Option<&Path>, name: &str, extensions: &[&str]) -> Option<(PathB
         entries.iter().find(is_wanted)
     })?;
     let beside = file.with_file_name(found);
+    if !is_within(&beside, within) {
+        return None;
+    }
     // One that cannot be read is none: the call says so.
     let bytes = lines::all(BufReader::new(File::open(&beside).ok()?)).ok()?;
     Some((beside, String::from_utf8_lossy(&bytes).into_owned()))

@@ -20,20 +20,27 @@ const PERMISSIVE: [&str; 10] = [
 ];
 
 /// Crates that are out of place here, and why.
-const BANNED: [(&str, &str); 9] = [
+const BANNED: [(&str, &str); 7] = [
     (
         "openssl-sys",
         "a library of the system, for a network that is never used",
     ),
     ("native-tls", "the same, behind a façade"),
     ("reqwest", "nothing is fetched from a network"),
-    ("tokio", "work is divided by rayon; there is nothing to wait for"),
     ("bindgen", "needs a C compiler's library where the workspace is built"),
     ("cmake", "builds C++ along with the workspace"),
     ("lazy_static", "the standard library has LazyLock"),
     (
         "serde_yaml",
         "no longer maintained; serde-saphyr reads the clusters' files",
+    ),
+];
+
+/// Crates that are out of place but for the protocol that agents speak, which only the command does; and why.
+const FOR_AGENTS: [(&str, &str); 2] = [
+    (
+        "tokio",
+        "work is divided by rayon; there is nothing to wait for but a question",
     ),
     ("chrono", "results do not depend on the time of day"),
 ];
@@ -194,6 +201,45 @@ fn no_crate_is_out_of_place() {
         .map(|(name, why)| format!("{name}: {why}"))
         .collect();
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// Those that a crate is built with, by way of all others.
+fn below<'a>(name: &'a str, uses: &'a BTreeMap<String, BTreeSet<String>>) -> BTreeSet<&'a str> {
+    let (mut seen, mut open) = (BTreeSet::new(), vec![name]);
+    while let Some(next) = open.pop() {
+        for used in uses.get(next).into_iter().flatten() {
+            if seen.insert(used.as_str()) {
+                open.push(used);
+            }
+        }
+    }
+    seen
+}
+
+#[test]
+fn what_agents_need_is_for_agents_alone() {
+    let packages = packages();
+    let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for package in &packages {
+        let name = package["name"].as_str().expect("a name");
+        let built = package["dependencies"].as_array().expect("dependencies").iter();
+        // Optional ones count, too, but for those of other crates' features.
+        let own = package["source"].is_null();
+        let built = built.filter(|used| used["kind"].as_str() != Some("dev") && (own || used["optional"] != true));
+        let names = built.filter_map(|used| used["name"].as_str().map(String::from));
+        uses.entry(name.to_string()).or_default().extend(names);
+    }
+    for library in ["sweepsim-job", "sweepsim-python"] {
+        let reached = below(library, &uses);
+        assert!(reached.len() > 40, "only {} crates below {library}", reached.len());
+        for (name, why) in FOR_AGENTS {
+            assert!(!reached.contains(name), "{library} needs {name}: {why}");
+        }
+    }
+    assert!(
+        below("sweepsim-cli", &uses).contains("tokio"),
+        "nobody speaks to agents"
+    );
 }
 
 #[test]

@@ -1,11 +1,15 @@
 //! The command line.
 
+#[cfg(feature = "mcp")]
+mod agents;
 mod batch;
 mod programs;
 mod requests;
 mod shard;
 mod values;
 
+#[cfg(feature = "mcp")]
+pub(crate) use agents::McpOptions;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
 use std::path::PathBuf;
@@ -13,7 +17,8 @@ use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_job::DeviationLimits;
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, length, limits, pair, parsed, plane, section, size, tile, tolerance, triple};
+use values::{area, camera, cells, length, limits, pair, parsed, section, size, tile, tolerance, triple};
+pub(crate) use values::{plane, stock};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -65,6 +70,10 @@ pub(crate) enum Command {
     ///
     /// Exit status: 0 proven; 1 not proven; 2 not a certificate, or it does not belong to these files.
     Check(CheckOptions),
+    /// Serves agents by the Model Context Protocol, on standard input and output: they inspect, verify and simulate
+    /// programs, compare parts and cut sections, below one folder.
+    #[cfg(feature = "mcp")]
+    Mcp(McpOptions),
     /// Prints what makes a shell complete this command's options.
     Completions(CompletionsOptions),
     /// Prints the manual page, or writes one for each command.

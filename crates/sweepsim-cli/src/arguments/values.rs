@@ -178,7 +178,7 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// `auto`, `block:` and six numbers, or a file.
-pub(super) fn stock(text: &str) -> Result<StockOption, String> {
+pub(crate) fn stock(text: &str) -> Result<StockOption, String> {
     if text.eq_ignore_ascii_case("auto") {
         return Ok(StockOption::Auto);
     }
@@ -195,7 +195,7 @@ pub(super) fn stock(text: &str) -> Result<StockOption, String> {
 }
 
 /// `x=1.5`, `y=…`, `z=…`, or `a,b,c=d` for the plane `a x + b y + c z = d`.
-pub(super) fn plane(text: &str) -> Result<Plane, String> {
+pub(crate) fn plane(text: &str) -> Result<Plane, String> {
     let wrong = || "expected a plane, like x=3.5, or a,b,c=d for a x + b y + c z = d".to_owned();
     let (normal, offset) = text.split_once('=').ok_or_else(wrong)?;
     let offset: f64 = offset.trim().parse().map_err(|_| wrong())?;

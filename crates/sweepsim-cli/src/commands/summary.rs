@@ -1,8 +1,8 @@
 //! The summary of `simulate`, `sweep` and `verify`.
 
 use crate::session::{Failure, Lines, Outputs};
-use sweepsim_formats::{AxisTravel, Report, ReportedFinding, StatementState, Verdict, WorkSummary};
-use sweepsim_job::words::{self, clock, found};
+use sweepsim_formats::{AxisTravel, Report, ReportedFinding, WorkSummary};
+use sweepsim_job::words::{self, clock};
 use sweepsim_job::{Plan, Task, is_covered, sentences};
 
 /// The maximum number of findings, tools and unresolved dexels that are listed.
@@ -120,29 +120,13 @@ pub(crate) fn summary(plan: &Plan, report: &Report, outputs: &Outputs, threads: 
     lines
 }
 
-/// The verdict in one line.
-pub(super) fn answer(verdict: Verdict, findings: &[ReportedFinding], report: &Report) -> String {
-    let open = report.statements.iter().flatten();
-    let open = open.filter(|statement| statement.state == StatementState::Open);
-    match verdict {
-        Verdict::Undecided => {
-            let places = open.map(|statement| statement.open_count.max(1) as u64).sum();
-            let places = words::counted(places, "place");
-            format!("UNDECIDED at {places}: nothing was found on the dexels' lines that does harm")
-        }
-        Verdict::Pass => words::passed(report),
-        Verdict::Fail if findings.is_empty() => "FAIL: the part deviates from its target".to_owned(),
-        Verdict::Fail => format!("FAIL: {}", found(findings).join(", ")),
-    }
-}
-
 /// The verdict, and the first findings.
 fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
-    let (Some(verdict), Some(findings)) = (report.verdict, &report.findings) else {
+    let (Some(answer), Some(findings)) = (words::answer(report), &report.findings) else {
         return;
     };
     let statements = report.statements.as_deref().unwrap_or_default();
-    line("verdict", &answer(verdict, findings, report));
+    line("verdict", &answer);
     for statement in statements {
         line("proof", &words::proven(statement));
     }

@@ -1,7 +1,6 @@
 //! `verify`: one program, or several one after the other; and what continuous integration gets of them.
 
 use super::run::{Done, Process, shard};
-use super::summary::answer;
 use crate::arguments::VerifyOptions;
 use crate::session::{Failure, Lines, Outputs, print};
 use std::collections::BTreeSet;
@@ -134,10 +133,7 @@ struct Row {
 impl Row {
     fn of(input: &Path, done: &Done) -> Self {
         let report = &done.written.report;
-        let findings = report.findings.as_deref().unwrap_or_default();
-        let mut answer = report
-            .verdict
-            .map_or(String::new(), |verdict| answer(verdict, findings, report));
+        let mut answer = words::answer(report).unwrap_or_default();
         if !done.written.certified {
             answer += "; some dexels are UNRESOLVED";
         }

@@ -8,6 +8,8 @@ mod exchange;
 mod frames;
 mod inspect;
 mod library;
+#[cfg(feature = "mcp")]
+mod mcp;
 mod page;
 mod programs;
 mod setups;

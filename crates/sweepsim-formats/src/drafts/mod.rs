@@ -10,7 +10,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::tools::{ToolLibrary, read_library};
-use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units};
+use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units, is_within};
 
 use crate::error::{FormatError, Problem};
 use crate::jobs::Provided;
@@ -185,7 +185,7 @@ impl<'a> Drafter<'a> {
                 .programs
                 .iter()
                 .map(|name| folder.join(name))
-                .find(|program| program.is_file());
+                .find(|program| program.is_file() && is_within(program, provided.within.as_deref()));
             let Some(program) = program else {
                 let names = library.programs.join(", ");
                 return Err(refuse(
@@ -201,6 +201,7 @@ impl<'a> Drafter<'a> {
         read.diameters.clone_from(&options.diameters);
         read.offsets.clone_from(&options.offsets);
         read.in_program_units = true;
+        read.within.clone_from(&provided.within);
         read.cutters = cutters(options.tools.as_deref(), provided);
         read.exact_arcs = true;
         let unknown = |what: &str, name: &str, names: &[&str]| {

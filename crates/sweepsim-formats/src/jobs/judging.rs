@@ -128,7 +128,7 @@ impl JobReader<'_> {
             None => None,
             Some(schema::Target::Mesh(name)) => {
                 let (mesh, colours) = self.mesh(name, "target", &["target".into()])?;
-                let file = self.beside(name);
+                let file = self.beside(name, &["target".into()])?;
                 Some(Target { file, mesh, colours })
             }
             Some(schema::Target::Dexels(name)) => Some(self.target_of_dexels(name, grid)?),
@@ -137,7 +137,8 @@ impl JobReader<'_> {
 
     /// The surface of the result of an earlier run, in millimetres like all its outputs.
     fn target_of_dexels(&self, name: &str, grid: &Grid) -> Result<Target, FormatError> {
-        let (file, steps) = (self.beside(name), ["target".into()]);
+        let steps = ["target".into()];
+        let file = self.beside(name, &steps)?;
         let surface = if DexelFormat::of(&file) == Some(DexelFormat::Tri) {
             self.named(read_tri_dexels_file(&file), &file, "target", &steps)?
                 .surface()

@@ -1,7 +1,7 @@
 //! What a job gets from its caller instead of from files.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sweepsim_motion::{Body, Tool};
 use sweepsim_nc::{NcError, Program, ReadOptions, read_file, read_text};
@@ -17,6 +17,8 @@ pub struct Provided {
     pub tools: BTreeMap<u32, Tool>,
     /// Shanks and holders of these tools.
     pub bodies: BTreeMap<u32, Vec<Body>>,
+    /// The folder that all files must be in that a job, a project or a program refers to, whatever links lead to.
+    pub within: Option<PathBuf>,
 }
 
 impl Provided {

@@ -9,6 +9,8 @@ use super::place::Step;
 use super::provided::Provided;
 use super::schema;
 use super::tools::ToolBox;
+use sweepsim_nc::is_within;
+
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::meshes::{STEP_CHORD, STEP_SHARE};
 use crate::text::{self, SpanTree};
@@ -150,8 +152,15 @@ impl JobReader<'_> {
     }
 
     /// A file named in the job, relative to the folder of the job.
-    pub(crate) fn beside(&self, name: &str) -> PathBuf {
-        self.file.parent().unwrap_or(FilePath::new("")).join(name)
+    pub(crate) fn beside(&self, name: &str, steps: &[Step]) -> Result<PathBuf, FormatError> {
+        let file = self.file.parent().unwrap_or(FilePath::new("")).join(name);
+        let within = self.provided.within.as_deref();
+        if !is_within(&file, within) {
+            let folder = within.unwrap_or(FilePath::new("")).display();
+            let problem = Problem::syntax(format!("{name} is not in {folder}: expected a file there"));
+            return Err(self.error(problem, steps));
+        }
+        Ok(file)
     }
 
     /// A place in the job's text.

@@ -1,6 +1,6 @@
 //! Numbers and findings for people.
 
-use sweepsim_formats::{Measure, Report, ReportedFinding, Scope, Statement, StatementState};
+use sweepsim_formats::{Measure, Report, ReportedFinding, Scope, Statement, StatementState, Verdict};
 
 /// `1234567` as `1,234,567`.
 #[must_use]
@@ -160,6 +160,24 @@ pub fn between(report: &Report) -> String {
         Some(statements) if is_everywhere(report) => format!("between them, {}", abouts(statements)),
         Some(statements) => format!("between them, only {}", abouts(statements)),
     }
+}
+
+/// The verdict in one line, if a program was judged.
+#[must_use]
+pub fn answer(report: &Report) -> Option<String> {
+    let findings = report.findings.as_deref().unwrap_or_default();
+    Some(match report.verdict? {
+        Verdict::Undecided => {
+            let open = report.statements.iter().flatten();
+            let open = open.filter(|statement| statement.state == StatementState::Open);
+            let places = open.map(|statement| statement.open_count.max(1) as u64).sum();
+            let places = counted(places, "place");
+            format!("UNDECIDED at {places}: nothing was found on the dexels' lines that does harm")
+        }
+        Verdict::Pass => passed(report),
+        Verdict::Fail if findings.is_empty() => "FAIL: the part deviates from its target".to_owned(),
+        Verdict::Fail => format!("FAIL: {}", found(findings).join(", ")),
+    })
 }
 
 /// The verdict of a program of which nothing was found that does harm, and all that was stated is proven.

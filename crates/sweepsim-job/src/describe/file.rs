@@ -13,7 +13,7 @@ use std::io::BufReader;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels};
 use sweepsim_formats::{
-    DexelFormat, Job, MeshFormat, STEP_CHORD, read_dexels_csv, read_dexels_file, read_mesh_file, read_step,
+    DexelFormat, Job, MeshFormat, Provided, STEP_CHORD, read_dexels_csv, read_dexels_file, read_mesh_file, read_step,
     read_tri_dexels_file,
 };
 use sweepsim_nc::tools::read_library;
@@ -30,7 +30,13 @@ pub fn describe(file: &Path, dialect: &DialectOptions) -> Result<Description, Jo
     // An arc is one move, as in the program.
     reading.exact_arcs = true;
     match Kind::of(file)? {
-        Kind::Job => job(&mut text, &Job::read(file)?),
+        Kind::Job => {
+            let provided = Provided {
+                within: dialect.within.clone(),
+                ..Provided::default()
+            };
+            job(&mut text, &Job::read_with(file, &provided)?);
+        }
         Kind::Mesh if MeshFormat::of(file) == Some(MeshFormat::Step) => step(&mut text, &read_step(file, STEP_CHORD)?),
         Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),
         Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Csv) => {

@@ -26,8 +26,20 @@ pub enum DeviationLimits {
     Job(PathBuf),
 }
 
+/// A part in memory.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Part {
+    /// A closed surface.
+    Mesh(Mesh),
+    /// Material on lines.
+    Dexels(Dexels),
+}
+
 /// A request to compare two parts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+///
+/// As notation it has files: one with parts in memory works in this process only.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct CompareRequest {
@@ -45,6 +57,9 @@ pub struct CompareRequest {
     pub grid: GridOptions,
     /// How the picture is drawn.
     pub view: ViewOptions,
+    /// Parts in memory, instead of these files.
+    #[serde(skip)]
+    given: [Option<Part>; 2],
 }
 
 /// Two parts that were read, to be compared.
@@ -80,7 +95,22 @@ impl CompareRequest {
             range: None,
             grid: GridOptions::default(),
             view: ViewOptions::default(),
+            given: [None, None],
         }
+    }
+
+    /// To compare this part, which the report calls by the name of the file, instead of the one in it.
+    #[must_use]
+    pub fn with_part(mut self, part: Part) -> Self {
+        self.given[0] = Some(part);
+        self
+    }
+
+    /// The same of the target.
+    #[must_use]
+    pub fn with_target(mut self, target: Part) -> Self {
+        self.given[1] = Some(target);
+        self
     }
 
     /// Reads both parts.
@@ -122,16 +152,28 @@ impl CompareRequest {
         } else {
             None
         };
-        let is_table = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-        if is_table(&self.part) && !is_table(&self.target) {
-            let target = Solid::read(&self.target, given.as_ref())?;
+        let is_table = |number: usize| {
+            let file = [&self.part, &self.target][number];
+            self.given[number].is_none() && file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
+        };
+        if is_table(0) && !is_table(1) {
+            let target = self.solid(1, given.as_ref())?;
             let grid = given.or(target.grid());
-            return Ok([Solid::read(&self.part, grid.as_ref())?, target]);
+            return Ok([self.solid(0, grid.as_ref())?, target]);
         }
-        let part = Solid::read(&self.part, given.as_ref())?;
+        let part = self.solid(0, given.as_ref())?;
         let grid = given.or(part.grid());
-        let target = Solid::read(&self.target, grid.as_ref())?;
+        let target = self.solid(1, grid.as_ref())?;
         Ok([part, target])
+    }
+
+    /// The part (0) or the target (1).
+    fn solid(&self, number: usize, grid: Option<&Grid>) -> Result<Solid, JobError> {
+        match &self.given[number] {
+            Some(Part::Mesh(mesh)) => Ok(Solid::Mesh(mesh.clone())),
+            Some(Part::Dexels(dexels)) => Ok(Solid::Dexels(dexels.clone())),
+            None => Solid::read([&self.part, &self.target][number], grid),
+        }
     }
 }
 
@@ -218,7 +260,10 @@ fn regions(
             .ok_or_else(|| JobError::file(file, "this job has no limits"))?,
     };
     let by_colour = |region: &LimitRegion| matches!(region.place, RegionPlace::Colour(_));
-    let colours = if limits.regions.iter().any(by_colour) && MeshFormat::of(&options.target).is_some() {
+    let colours = if limits.regions.iter().any(by_colour)
+        && options.given[1].is_none()
+        && MeshFormat::of(&options.target).is_some()
+    {
         read_coloured_mesh_file(&options.target)?.1
     } else {
         Vec::new()

@@ -5,6 +5,6 @@ mod convert;
 mod deviation;
 mod solid;
 
-pub use compare::{CompareRequest, DeviationLimits, Difference, Pair};
+pub use compare::{CompareRequest, DeviationLimits, Difference, Pair, Part};
 pub use convert::{ConvertRequest, WritingOptions};
 pub use solid::GridOptions;

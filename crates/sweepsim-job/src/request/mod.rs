@@ -48,6 +48,8 @@ pub struct Request {
     #[serde(default)]
     pub(crate) cells: Option<[usize; 2]>,
     #[serde(default)]
+    pub(crate) cell: Option<f64>,
+    #[serde(default)]
     pub(crate) tolerance: Option<f64>,
     #[serde(default)]
     pub(crate) directions: Option<Directions>,
@@ -82,6 +84,7 @@ impl Request {
             outputs: Vec::new(),
             sweeping: SweepOptions::default(),
             cells: None,
+            cell: None,
             tolerance: None,
             directions: None,
             decimate: None,
@@ -188,6 +191,14 @@ impl Request {
     pub fn cells(self, cells: impl Into<Option<[usize; 2]>>) -> Self {
         let cells = cells.into();
         Self { cells, ..self }
+    }
+
+    /// The side of the cells in millimetres, or nearly so, instead of the job's: a whole number of them covers the
+    /// grid.
+    #[must_use]
+    pub fn cell(self, side: impl Into<Option<f64>>) -> Self {
+        let cell = side.into();
+        Self { cell, ..self }
     }
 
     /// The tolerance of interval ends in millimetres, instead of the job's.
@@ -318,7 +329,14 @@ impl Request {
 
     /// What can be said before anything is read.
     pub(crate) fn check(&self) -> Result<(), JobError> {
-        let positive = [("tolerance", self.tolerance), ("decimate", self.decimate)];
+        if self.cell.is_some() && self.cells.is_some() {
+            return Err(JobError::request("cell", "expected it or `cells`, not both"));
+        }
+        let positive = [
+            ("cell", self.cell),
+            ("tolerance", self.tolerance),
+            ("decimate", self.decimate),
+        ];
         for (field, value) in positive {
             if value.is_some_and(|value| !(value > 0.0 && value.is_finite())) {
                 return Err(JobError::request(field, "expected a positive number of millimetres"));

@@ -41,6 +41,8 @@ pub struct DialectOptions {
     pub diameters: BTreeMap<u32, f64>,
     /// Where work offsets are that the program does not set, by name (`G55`), in its unit from the zero of the first.
     pub offsets: BTreeMap<String, [f64; 3]>,
+    /// The folder that all files must be in that a job, a project or a program refers to, whatever links lead to.
+    pub within: Option<PathBuf>,
 }
 
 /// What a job says, given with a program instead.
@@ -70,6 +72,7 @@ impl DialectOptions {
         options.diameters.clone_from(&self.diameters);
         options.offsets.clone_from(&self.offsets);
         options.in_program_units = true;
+        options.within.clone_from(&self.within);
         options.controller = self.controller.as_deref().and_then(Controller::named);
         options.format = self.format.as_deref().and_then(Format::named);
         if let Some(machine) = &self.machine {

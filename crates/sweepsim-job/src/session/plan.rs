@@ -8,7 +8,7 @@ use crate::shards::PieceFile;
 use crate::warnings;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use sweepsim_dexel::Grid;
+use sweepsim_dexel::{Grid, Stock};
 pub use sweepsim_formats::Guess;
 use sweepsim_formats::{Draft, Job, Limits, Provided, draft_of};
 
@@ -43,10 +43,14 @@ impl Request {
         let began = Instant::now();
         self.check()?;
         let (mut job, found, guessed) = read(&self)?;
-        if let Some(cells) = self.cells {
+        let asked = match self.cell {
+            Some(side) => Some(("cell", covering(&job.grid, side))),
+            None => self.cells.map(|cells| ("cells", cells)),
+        };
+        if let Some((field, cells)) = asked {
             job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
                 .map(|grid| grid.in_frame(*job.grid.frame()))
-                .map_err(|error| JobError::request("cells", error.to_string()))?;
+                .map_err(|error| JobError::request(field, error.to_string()))?;
         }
         job.tolerance = self.tolerance.unwrap_or(job.tolerance);
         if let Some([gouge, excess]) = self.limits {
@@ -71,6 +75,14 @@ impl Request {
     }
 }
 
+/// How many cells of nearly this side cover a grid. The grid itself refuses too many.
+fn covering(grid: &Grid, side: f64) -> [usize; 2] {
+    [0, 1].map(|k| {
+        let across = (grid.max()[k] - grid.min()[k]) / side;
+        across.round().clamp(1.0, 1e9) as usize
+    })
+}
+
 /// The job of a request, and what was found and guessed if it was made for a program.
 fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
     let options = &request.program;
@@ -78,10 +90,13 @@ fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
         text: None,
         tools: request.given.tools.clone(),
         bodies: request.given.bodies.clone(),
+        within: options.dialect.within.clone(),
     };
+    let mut is_job = false;
     let (mut job, found, guessed) = match &request.input {
         Input::File(file) => match Kind::of(file)? {
             Kind::Job => {
+                is_job = true;
                 refuse_options(options, &file.display().to_string())?;
                 (Job::read_with(file, &given)?, Vec::new(), Vec::new())
             }
@@ -92,6 +107,7 @@ fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
             }
         },
         Input::Job { name, text } => {
+            is_job = true;
             refuse_options(options, &name.display().to_string())?;
             (Job::parse_with(text, name, &given)?, Vec::new(), Vec::new())
         }
@@ -102,6 +118,10 @@ fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
     };
     let given = &request.given;
     if let Some(stock) = &given.stock {
+        // A program has no grid of its own: it goes on with that of the program before.
+        if let (Stock::Dexels(dexels), false) = (stock, is_job) {
+            job.grid = *dexels.grid();
+        }
         job.stock = stock.clone();
     }
     for setup in &mut job.setups {

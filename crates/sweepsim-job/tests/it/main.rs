@@ -2,6 +2,7 @@
 
 mod certificates;
 mod ci;
+mod given;
 mod machine;
 mod memory;
 mod quickstart;

@@ -66,6 +66,8 @@ pub struct ReadOptions {
     pub variables: BTreeMap<u32, f64>,
     /// Folders with files of subprograms, in addition to the program's own.
     pub subprograms: Vec<PathBuf>,
+    /// The folder that files of subprograms must be in, whatever links lead to: those elsewhere are missing.
+    pub within: Option<PathBuf>,
     /// How many blocks may be executed: bounds the time that loops can take.
     pub most_blocks: u64,
     /// How many poses and events there may be: bounds the memory that a file of a few bytes can demand.
@@ -99,6 +101,7 @@ impl Default for ReadOptions {
             wear_registers: false,
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
+            within: None,
             most_blocks: 20_000_000,
             most_poses: 20_000_000,
             start: None,

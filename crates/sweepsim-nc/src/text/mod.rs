@@ -1,6 +1,7 @@
 //! Problems with their place in a text, its lines, and numbers as text.
 
 pub(crate) mod assumption;
+pub(crate) mod confined;
 pub(crate) mod error;
 pub(crate) mod kept;
 pub(crate) mod lines;

@@ -192,7 +192,8 @@ impl JobReader<'_> {
                 options.upright_arcs = matches!(raw.arcs, None | Some(schema::Arcs::Upright));
                 options.tilted_arcs = options.upright_arcs;
                 options.level_arcs = options.upright_arcs || matches!(raw.arcs, Some(schema::Arcs::Level));
-                let file = self.beside(name);
+                let file = self.beside(name, &steps(&["file".into()]))?;
+                options.within.clone_from(&self.provided.within);
                 if file
                     .extension()
                     .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
@@ -298,7 +299,7 @@ impl JobReader<'_> {
         if let Some(name) = &raw.machine {
             let read = match Machine::named(name) {
                 Some(machine) => Ok(machine),
-                None => Machine::read_file(&self.beside(name)),
+                None => Machine::read_file(&self.beside(name, &steps(&["machine".into()]))?),
             };
             options.machine = read.map_err(|error| {
                 let problem = Problem::syntax(format!("machine {name}: {error}"));

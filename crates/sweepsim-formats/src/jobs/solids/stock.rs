@@ -88,7 +88,7 @@ impl JobReader<'_> {
 
     /// The result of an earlier run, in millimetres like all its outputs.
     fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
-        let file = self.beside(name);
+        let file = self.beside(name, steps)?;
         let (found, stock) = if DexelFormat::of(&file) == Some(DexelFormat::Tri) {
             let sets = self
                 .named(read_tri_dexels_file(&file), &file, "stock", steps)?
@@ -120,7 +120,7 @@ impl JobReader<'_> {
         what: &'static str,
         steps: &[Step],
     ) -> Result<(TriangleSoup, Vec<Option<Colour>>), FormatError> {
-        let file = self.beside(name);
+        let file = self.beside(name, steps)?;
         if MeshFormat::of(&file) == Some(MeshFormat::Step) {
             // Its unit is in the file.
             let part = self.named(read_step(&file, self.chord), &file, what, steps)?;

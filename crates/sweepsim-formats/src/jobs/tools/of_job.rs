@@ -59,7 +59,7 @@ impl JobReader<'_> {
     /// The tools of a library, and its name.
     fn library(&self, name: Option<&str>) -> Result<Option<Library>, FormatError> {
         let Some(name) = name else { return Ok(None) };
-        let file = self.beside(name);
+        let file = self.beside(name, &["library".into()])?;
         let read = read_library(&file, self.unit != 1.0).map_err(FormatError::from);
         let library = self.named(read, &file, "tool", &["library".into()])?;
         Ok(Some((library.tools, name.to_owned())))
@@ -68,7 +68,7 @@ impl JobReader<'_> {
     /// The solid of tool `number`, or of one of its bodies, and notes about it.
     fn tool(&self, number: u32, raw: &schema::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
         if let schema::Tool::Surface(name) = raw {
-            let file = self.beside(name);
+            let file = self.beside(name, steps)?;
             let tool = self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)?;
             return Ok((tool, Vec::new()));
         }

@@ -12,6 +12,7 @@ use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::syntax::block::Block;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::assumption::Assumption;
+use crate::text::confined::is_within;
 use crate::text::error::NcProblem;
 use crate::text::lines;
 
@@ -23,6 +24,7 @@ pub(crate) struct Texts {
     pub sources: Vec<Rc<Source>>,
     pub files: Vec<PathBuf>,
     folders: Vec<PathBuf>,
+    within: Option<PathBuf>,
     looked_for: BTreeSet<Label>,
     /// Where the loop that begins in a line ends.
     pub loop_ends: BTreeMap<SourceLine, Option<usize>>,
@@ -34,6 +36,7 @@ impl Texts {
             sources: vec![Rc::new(Source::new(0, Rc::clone(input.text)))],
             files: input.file.map(Path::to_owned).into_iter().collect(),
             folders: folders(input.file, &options.subprograms),
+            within: options.within.clone(),
             looked_for: BTreeSet::new(),
             loop_ends: BTreeMap::new(),
         }
@@ -142,7 +145,7 @@ impl Reader {
         for folder in &self.texts.folders {
             for (name, extension) in names.iter().flat_map(|name| extensions.iter().map(move |e| (name, e))) {
                 let path = folder.join(format!("{name}{extension}"));
-                if path.is_file() {
+                if path.is_file() && is_within(&path, self.texts.within.as_deref()) {
                     let source = read(&path, self.texts.files.len())?;
                     self.texts.files.push(path);
                     self.texts.sources.push(Rc::new(source));
