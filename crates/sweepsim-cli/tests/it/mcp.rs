@@ -204,7 +204,11 @@ fn nothing_outside_of_the_root_is_read() {
         ] {
             std::fs::write(root.join(name), job(field)).unwrap();
         }
+        let body = r#"(name: "guard", on: "Z", shape: File("../secret.stl"))"#;
+        let machine = format!("Machine(name: \"mill\", bodies: [{body}])");
+        std::fs::write(root.join("machine.ron"), machine).unwrap();
         let mut outside = vec![
+            json!({"path": "bracket.nc", "machine": "machine.ron"}),
             json!({"path": "../secret.nc"}),
             json!({"path": folder.path().join("secret.nc")}),
             json!({"path": "inner/../../secret.nc"}),

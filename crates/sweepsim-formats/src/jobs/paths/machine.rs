@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use sweepsim_machine::{Body, Convex};
-use sweepsim_nc::{AxesCourse, BodyShape, Kinematics};
+use sweepsim_nc::{AxesCourse, BodyShape, Kinematics, is_within};
 
 use crate::error::{FormatError, Problem};
 use crate::meshes::read_mesh_file;
@@ -20,13 +20,13 @@ pub struct OnMachine {
     pub bodies: Arc<[Body]>,
 }
 
-/// The bodies of a machine, with the files that it names.
-pub(super) fn bodies(machine: &Kinematics) -> Result<Arc<[Body]>, FormatError> {
+/// The bodies of a machine, with the files that it names: they must be within a folder, if one is given.
+pub(super) fn bodies(machine: &Kinematics, within: Option<&FilePath>) -> Result<Arc<[Body]>, FormatError> {
     let chain = machine.chain();
     let body = |described: &sweepsim_nc::BodyDescription| {
         let name = &described.name;
         let link = chain.link(&described.on).unwrap_or(chain.base());
-        let solids = solids(&described.shape)?;
+        let solids = solids(&described.shape, within)?;
         let problem = || {
             let what = format!("the shape of the body {name} of the machine");
             FormatError::new(Problem::value(what, "no solid", "solids with finite numbers"), None)
@@ -36,7 +36,7 @@ pub(super) fn bodies(machine: &Kinematics) -> Result<Arc<[Body]>, FormatError> {
     machine.description().bodies.iter().map(body).collect()
 }
 
-fn solids(shape: &BodyShape) -> Result<Vec<Convex>, FormatError> {
+fn solids(shape: &BodyShape, within: Option<&FilePath>) -> Result<Vec<Convex>, FormatError> {
     Ok(match shape {
         BodyShape::Block { min, max } => vec![Convex::Block { min: *min, max: *max }],
         BodyShape::Cylinder { from, to, radius } => {
@@ -45,7 +45,13 @@ fn solids(shape: &BodyShape) -> Result<Vec<Convex>, FormatError> {
         }
         BodyShape::Turned { at, axis, outline } => Convex::cones(*at, Vector3::from(*axis), outline),
         BodyShape::File(name) => {
-            let mesh = read_mesh_file(FilePath::new(name))?;
+            let file = FilePath::new(name);
+            if !is_within(file, within) {
+                let folder = within.unwrap_or(FilePath::new("")).display();
+                let problem = Problem::syntax(format!("{name} is not in {folder}: expected a file there"));
+                return Err(FormatError::new(problem, None));
+            }
+            let mesh = read_mesh_file(file)?;
             let soup = mesh.soup().unwrap_or_default();
             soup.triangles.into_iter().map(Convex::Triangle).collect()
         }

@@ -52,7 +52,10 @@ pub(crate) fn of_program(
     let has_spindle = turns_spindle(&program);
     let on = program.machine.kinematics.clone();
     let kinematics = on.as_deref();
-    let bodies = kinematics.map_or_else(|| Ok(Arc::from([])), machine::bodies)?;
+    let bodies = kinematics.map_or_else(
+        || Ok(Arc::from([])),
+        |kinematics| machine::bodies(kinematics, provided.within.as_deref()),
+    )?;
     let follows = !bodies.is_empty() || kinematics.is_some_and(has_limits);
     let beyond = kinematics.map_or_else(Vec::new, |kinematics| check(&program, kinematics));
     let mut times = kinematics.map(|_| times(&program));
