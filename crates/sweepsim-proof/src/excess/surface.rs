@@ -272,7 +272,7 @@ mod tests {
     use crate::solid::Target;
     use sweepsim_dexel::TriangleSoup;
 
-    /// Any middle of two opposite normals would do for what is covered, but with some of them this never came to an end.
+    /// Any middle of two opposite normals would cover what it should, but with some of them this never came to an end.
     #[test]
     fn opposite_normals_come_to_an_end() {
         let axes = [0, 1, 2].map(|k| Vector3::ith(k, 1.0));

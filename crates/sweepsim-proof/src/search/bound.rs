@@ -4,8 +4,8 @@
 //! the cutter, lifted by a vector `w`, be above some planes `⟨nᵢ, x⟩ = eᵢ`, and every triangle in `H′` below one of
 //! them. The region `Ω ⊂ H′` above all planes is convex and free of surface: all of it is outside of the solid, or all
 //! inside. If one point of it is outside, so is every lifted point, and no point of `C` is deeper than `|w|`. This
-//! needs `|w| ≤ half`, or lifted points may be beyond `H′`. With `dᵢ` the depth of the cutter below plane `i`, the best
-//! `w` is the shortest with `⟨nᵢ, w⟩ ≥ dᵢ`.
+//! needs `|w|` to be at most the `lift` of the cell, or lifted points may be beyond `H′`. With `dᵢ` the depth of the
+//! cutter below plane `i`, the best `w` is the shortest with `⟨nᵢ, w⟩ ≥ dᵢ`.
 //!
 //! **Slabs.** If for two such normals, alone, the depths are `a − ⟨n, x⟩` and `b − ⟨m, x⟩`, the smaller of both is at
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.

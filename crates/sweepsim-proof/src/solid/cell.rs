@@ -1,7 +1,8 @@
 //! Cubes of space, with what of a solid's surface is near them.
 //!
 //! A cell is a cube `H`; its surroundings `H′` are a larger cube around the same centre, which holds whatever is lifted
-//! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody asks, and keep their children.
+//! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody
+//! asks, and keep their children.
 
 use super::outside::is_outside;
 use super::polygon::{Piece, area, clip};
