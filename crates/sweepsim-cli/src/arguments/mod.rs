@@ -3,6 +3,7 @@
 #[cfg(feature = "mcp")]
 mod agents;
 mod batch;
+mod judging;
 mod programs;
 mod requests;
 mod shard;
@@ -11,13 +12,14 @@ mod values;
 #[cfg(feature = "mcp")]
 pub(crate) use agents::McpOptions;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+pub(crate) use judging::JudgeOptions;
 pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_job::DeviationLimits;
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, length, limits, pair, parsed, section, size, tile, tolerance, triple};
+use values::{area, camera, cells, limits, parsed, section, size, tile, tolerance};
 pub(crate) use values::{plane, stock};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
@@ -185,41 +187,6 @@ pub(crate) struct RunOptions {
     /// Prints the report as JSON instead of the summary.
     #[arg(long)]
     pub json: bool,
-}
-
-/// What `verify` looks at.
-#[derive(Debug, Args)]
-pub(crate) struct JudgeOptions {
-    /// Ends at the first finding.
-    #[arg(long)]
-    pub first: bool,
-    /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres, instead of the job's
-    /// [default: 0.1 each].
-    #[arg(long, value_name = "GOUGE,EXCESS", value_parser = pair)]
-    pub limits: Option<[f64; 2]>,
-    /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
-    #[arg(long, value_name = "MM", value_parser = length)]
-    pub clearance: Option<f64>,
-    /// Takes shanks and holders larger by half the diagonal between dexels, and cutters in rapids and beside fixtures:
-    /// what they touch beside a dexel is found as well.
-    #[arg(long)]
-    pub sure: bool,
-    /// Proves nothing between the lines of the dexels, and leaves no certificate.
-    #[arg(long)]
-    pub no_proof: bool,
-    /// Also writes the certificate of what was proven to this file, for `check`.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["no_proof", "shard"])]
-    pub certificate: Option<PathBuf>,
-    /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
-    #[arg(long)]
-    pub moves: bool,
-    /// Judges the machine for all places of the part this far from where it is, like 5,5,2 in millimetres along x, y
-    /// and z, one way or the other.
-    #[arg(long, value_name = "X,Y,Z", value_parser = triple)]
-    pub offset_range: Option<[f64; 3]>,
-    /// Judges the machine for all tools this much longer or shorter than it takes them, in millimetres.
-    #[arg(long, value_name = "MM", value_parser = length)]
-    pub length_range: Option<f64>,
 }
 
 #[derive(Debug, Args)]

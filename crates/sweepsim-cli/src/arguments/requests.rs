@@ -1,8 +1,8 @@
 //! From the command line to requests.
 
 use super::{
-    CompareOptions, ConvertOptions, DialectOptions, Directions, GridOptions, JudgeOptions, Output, ProgramOptions,
-    RunOptions, SectionOptions, ViewOptions, WritingOptions,
+    CompareOptions, ConvertOptions, DialectOptions, Directions, GridOptions, Output, ProgramOptions, RunOptions,
+    SectionOptions, ViewOptions, WritingOptions,
 };
 use std::path::Path;
 use sweepsim_job as job;
@@ -92,18 +92,6 @@ impl WritingOptions {
         options.machine.clone_from(&self.for_machine);
         (options.axes, options.decimals) = (self.axes, self.decimals);
         options
-    }
-}
-
-impl JudgeOptions {
-    pub fn given(&self) -> job::Judging {
-        let mut judging = job::Judging::default();
-        (judging.first, judging.clearance) = (self.first, self.clearance);
-        (judging.sure, judging.moves) = (self.sure, self.moves);
-        judging.proof = !self.no_proof;
-        judging.offset_range = self.offset_range.unwrap_or_default();
-        judging.length_range = self.length_range.unwrap_or_default();
-        judging
     }
 }
 
