@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use sweepsim::systems::Plane;
 use sweepsim_job::{
-    CompareRequest, ConvertRequest, DialectOptions, Directions, Memory, Merge, Output, Request, ShardNumber, Sink,
-    Task, ViewOptions, describe,
+    CompareRequest, ConvertRequest, DialectOptions, Directions, Judging, Memory, Merge, Output, Request, ShardNumber,
+    Sink, Task, ViewOptions, describe,
 };
 
 const ALL: [Output; 6] = [
@@ -96,6 +96,9 @@ fn compare(job: &Path, task: Task, outputs: &[Output], frames: Option<u16>, file
     let (names, file) = (names.join(","), job.to_str().unwrap());
     let mut arguments = vec![task.name(), file, "--out", "out", "--only", &names];
     arguments.extend(["--cells", "24x16", "--size", "64x48", "--moments", "2"]);
+    // Proofs of long programs take long, and are the same as those of short ones.
+    let proof = task != Task::Verify || outputs.contains(&Output::Picture);
+    arguments.extend((!proof).then_some("--no-proof"));
     let count = frames.map(|count| count.to_string());
     arguments.extend(count.iter().flat_map(|count| ["--frames", count]));
     let output = folder.run(&arguments);
@@ -103,6 +106,9 @@ fn compare(job: &Path, task: Task, outputs: &[Output], frames: Option<u16>, file
         .task(task)
         .cells([24, 16])
         .outputs(outputs.to_vec());
+    let mut judging = Judging::default();
+    judging.proof = proof;
+    let request = request.judging(judging);
     let (made, status) = run(request.moments(2).view(small()).frames(frames, true));
     let what = format!("{} {file}", task.name());
     assert_eq!(output.status.code(), Some(status), "{what}: {}", text(&output.stderr));
