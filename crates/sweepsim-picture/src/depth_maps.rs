@@ -5,6 +5,8 @@ use crate::base::steps::Steps;
 use crate::base::vector::{Vector, cross, dot, unit};
 use crate::scene::Scene;
 use rayon::prelude::*;
+use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// Texels across a tile of a depth map.
 const TILE: usize = 16;
@@ -15,6 +17,9 @@ const LANES: usize = 8;
 const STEP: i32 = 256;
 /// The largest number of steps: products of differences stay below 2⁶³.
 const LIMIT: i32 = 1 << 29;
+
+/// Of more triangles than this for each texel, maps show those of a coarser surface.
+const TRIANGLES: usize = 4;
 
 /// Depth maps seen from several directions.
 pub(crate) struct DepthMaps {
@@ -29,9 +34,10 @@ impl DepthMaps {
     ///
     /// Each is a step; returns `None` if they end before all are drawn.
     pub fn new(scene: &Scene, directions: &[Vector], texels: usize, steps: &Steps<'_>) -> Option<Self> {
+        let surface = &Surface::new(scene, texels);
         let maps: Option<Vec<DepthMap>> = directions
             .par_iter()
-            .map(|direction| steps.step(|| DepthMap::new(scene, *direction, texels)))
+            .map(|direction| steps.step(|| DepthMap::new(surface, *direction, texels)))
             .collect();
         let maps = maps?;
         let lanes = maps.chunks(LANES).map(|maps| {
@@ -117,6 +123,44 @@ fn across(texels: usize) -> [f32; 2] {
     [0.99 * half, half - 0.5]
 }
 
+/// The triangles that maps show.
+struct Surface<'a> {
+    positions: Cow<'a, [Vector]>,
+    triangles: Cow<'a, [[u32; 3]]>,
+    /// Whether their backs are seen, too: light that enters through a section reaches the back of the face behind it.
+    backs: bool,
+}
+
+impl<'a> Surface<'a> {
+    /// Those of the scene. Of many more than texels, vertices in one cube as wide as a texel become one, the first of
+    /// them: no point moves by more than two texels, which the bias of shadows hides.
+    fn new(scene: &'a Scene, texels: usize) -> Self {
+        let mut surface = Self {
+            positions: Cow::Borrowed(&scene.positions),
+            triangles: Cow::Borrowed(&scene.triangles),
+            backs: !scene.sections.is_empty(),
+        };
+        if scene.triangles.len() <= TRIANGLES * texels * texels {
+            return surface;
+        }
+        let mut positions = Vec::new();
+        // Only looked up, so its order does not matter.
+        let mut known: HashMap<[i32; 3], u32> = HashMap::new();
+        let number = |p: &Vector| {
+            let cube = p.map(|c| (0.5 * texels as f32 * c).floor() as i32);
+            *known.entry(cube).or_insert_with(|| {
+                positions.push(*p);
+                positions.len() as u32 - 1
+            })
+        };
+        let numbers: Vec<u32> = scene.positions.iter().map(number).collect();
+        let triangles = scene.triangles.iter().map(|t| t.map(|v| numbers[v as usize]));
+        let triangles = triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        (surface.positions, surface.triangles) = (Cow::Owned(positions), Cow::Owned(triangles));
+        surface
+    }
+}
+
 /// Distances from a distant light to the nearest surface.
 struct DepthMap {
     /// Towards the light.
@@ -156,7 +200,7 @@ fn area(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
 }
 
 impl DepthMap {
-    fn new(scene: &Scene, direction: Vector, texels: usize) -> Self {
+    fn new(surface: &Surface<'_>, direction: Vector, texels: usize) -> Self {
         let axes = axes_of(direction);
         let mut map = Self {
             direction,
@@ -176,10 +220,9 @@ impl DepthMap {
                 depth: -towards,
             }
         };
-        let corners: Vec<Corner> = scene.positions.iter().map(seen).collect();
-        for t in &scene.triangles {
-            // Light that enters through a section reaches the back of the face behind it.
-            map.draw(t.map(|v| corners[v as usize]), !scene.sections.is_empty());
+        let corners: Vec<Corner> = surface.positions.iter().map(seen).collect();
+        for t in surface.triangles.iter() {
+            map.draw(t.map(|v| corners[v as usize]), surface.backs);
         }
         map.ranges = (0..map.tiles).flat_map(|row| map.ranges(row)).collect();
         map
@@ -289,5 +332,56 @@ impl DepthMap {
         let (s, t) = (x - column as f32, y - row as f32);
         let (lower, upper) = (a * (1.0 - s) + b * s, c * (1.0 - s) + d * s);
         lower * (1.0 - t) + upper * t
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A relief of hills, of `n` × `n` squares.
+    fn hills(n: u32) -> Scene {
+        let place = |k: u32| 1.2 * (k as f32 / n as f32 - 0.5);
+        let corner = |k: u32| (place(k % (n + 1)), place(k / (n + 1)));
+        let height = |(x, y): (f32, f32)| [x, y, 0.1 * (7.0 * x).sin() * (5.0 * y).cos()];
+        let square = |k: u32| {
+            let a = k / n * (n + 1) + k % n;
+            [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
+        };
+        Scene {
+            positions: (0..(n + 1) * (n + 1)).map(|k| height(corner(k))).collect(),
+            triangles: (0..n * n).flat_map(square).collect(),
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn maps_of_many_triangles_show_a_coarser_surface_within_two_texels() {
+        let (scene, texels) = (hills(200), 50);
+        let coarse = Surface::new(&scene, texels);
+        assert!(
+            8 * coarse.triangles.len() < scene.triangles.len(),
+            "{}",
+            coarse.triangles.len()
+        );
+        let whole = Surface {
+            positions: Cow::Borrowed(&scene.positions),
+            triangles: Cow::Borrowed(&scene.triangles),
+            backs: false,
+        };
+        for direction in [[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [-0.48, 0.36, 0.8]] {
+            let [a, b] = [&whole, &coarse].map(|surface| DepthMap::new(surface, direction, texels));
+            let both: Vec<(f32, f32)> = a
+                .depth
+                .into_iter()
+                .zip(b.depth)
+                .filter(|(a, b)| a.is_finite() && b.is_finite())
+                .collect();
+            assert!(both.len() > texels * texels / 5);
+            let most = both.iter().map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(most <= 2.0 * 2.0 / texels as f32, "{most}");
+        }
+        // Of few triangles, all are shown.
+        assert_eq!(Surface::new(&scene, 200).triangles.len(), scene.triangles.len());
     }
 }

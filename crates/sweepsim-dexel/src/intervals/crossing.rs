@@ -8,6 +8,7 @@
 
 use super::interval::{End, Interval, Source};
 use super::operations::merge;
+use std::cmp::Ordering;
 use thiserror::Error;
 
 /// A point of a line where the coverage count jumps.
@@ -79,8 +80,8 @@ fn between(a: &Crossing, b: &Crossing, same: f64) -> Option<Interval> {
 /// The most crossings that are sorted by insertion.
 const FEW: usize = 24;
 
-/// What [`cover_any`] does for a few crossings of different heights, without a chain, that pass their audit: heights
-/// are sorted, and crossings stay where they are. `None` for all others.
+/// What [`cover_any`] does for a few crossings without a chain that pass their audit: heights are sorted, and crossings
+/// stay where they are. `None` for all others.
 fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -> Option<()> {
     intervals.clear();
     let mut heights = [(0.0_f64, 0_u8); FEW];
@@ -91,7 +92,10 @@ fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -
             return None;
         }
         let mut at = n;
-        while at > 0 && heights[at - 1].0 > z {
+        while at > 0 && {
+            let (below, number) = heights[at - 1];
+            below > z || (below == z && order(&crossings[usize::from(number)], crossing).is_gt())
+        } {
             heights[at] = heights[at - 1];
             at -= 1;
         }
@@ -115,8 +119,8 @@ fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -
             }
             match heights.get(last + 1) {
                 Some((z, _)) if *z - heights[last].0 <= same => {
-                    // Equal heights have another order; chains are counted otherwise.
-                    if *z == heights[last].0 || *z - bottom > same {
+                    // Chains are counted otherwise.
+                    if *z - bottom > same {
                         intervals.clear();
                         return None;
                     }
@@ -146,11 +150,7 @@ fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -
 }
 
 fn cover_any(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
-    crossings.sort_by(|a, b| {
-        a.z.total_cmp(&b.z)
-            .then(b.jump.cmp(&a.jump))
-            .then_with(|| a.source.rank().cmp(&b.source.rank()))
-    });
+    crossings.sort_by(order);
     intervals.clear();
     // Sorted: heights that are no numbers, or infinite, are the first or the last.
     let odd = [crossings.first(), crossings.last()]
@@ -195,6 +195,13 @@ fn cover_any(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval
         intervals.clear();
         Err(AuditFailure { sum, lowest, z: place })
     }
+}
+
+/// From below; of those at one height, what begins comes first, then what was made first.
+fn order(a: &Crossing, b: &Crossing) -> Ordering {
+    a.z.total_cmp(&b.z)
+        .then(b.jump.cmp(&a.jump))
+        .then_with(|| a.source.rank().cmp(&b.source.rank()))
 }
 
 fn end(crossing: &Crossing) -> End {

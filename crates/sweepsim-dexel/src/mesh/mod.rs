@@ -123,9 +123,10 @@ impl Mesh {
     /// [`MeshError::TooManyVertices`]
     pub fn crisp(&self, cosine: f64) -> Result<Self, MeshError> {
         let mut mesh = Self::default();
-        // The vertices made of each, with the sums of their triangles' normals, and of lengths of those that are cut
-        // less the others.
-        let mut made: Vec<Vec<(u32, [f64; 3], f64)>> = vec![Vec::new(); self.vertices.len()];
+        // Of each vertex the one that was made of it last, and of each that was made the one before it; with the sums
+        // of its triangles' normals, and of lengths of those that are cut less the others.
+        let mut last = vec![u32::MAX; self.vertices.len()];
+        let mut made: Vec<(u32, [f64; 3], f64)> = Vec::with_capacity(self.vertices.len());
         for triangle in &self.triangles {
             if triangle.iter().any(|v| *v as usize >= self.vertices.len()) {
                 continue;
@@ -138,30 +139,36 @@ impl Mesh {
                 .all(|v| self.cut.get(*v as usize).copied().unwrap_or(false));
             let area = normal.iter().map(|c| c * c).sum::<f64>().sqrt() * if cut { 1.0 } else { -1.0 };
             let corners = triangle.map(|old| {
-                let near = made[old as usize].iter_mut().find(|(_, sum, _)| {
+                // The first that is near.
+                let (mut at, mut near) = (last[old as usize], None);
+                while let Some((before, sum, _)) = made.get(at as usize) {
                     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-                    dot(*sum, normal) >= cosine * dot(*sum, *sum).sqrt() * dot(normal, normal).sqrt()
-                });
-                if let Some((new, sum, cut)) = near {
+                    if dot(*sum, normal) >= cosine * dot(*sum, *sum).sqrt() * dot(normal, normal).sqrt() {
+                        near = Some(at);
+                    }
+                    at = *before;
+                }
+                if let Some(near) = near {
+                    let (_, sum, cut) = &mut made[near as usize];
                     *sum = [0, 1, 2].map(|k| sum[k] + normal[k]);
                     *cut += area;
-                    return *new;
+                    return near;
                 }
                 let new = mesh.vertices.len() as u32;
                 mesh.vertices.push(self.vertices[old as usize]);
                 mesh.cut.push(false);
                 mesh.normals.push([0.0, 0.0, 1.0]);
-                made[old as usize].push((new, normal, area));
+                made.push((std::mem::replace(&mut last[old as usize], new), normal, area));
                 new
             });
             mesh.triangles.push(corners);
             check_vertices(mesh.vertices.len(), MOST_VERTICES)?;
         }
-        for (new, sum, cut) in made.into_iter().flatten() {
-            mesh.cut[new as usize] = cut > 0.0;
+        for (new, (_, sum, cut)) in made.into_iter().enumerate() {
+            mesh.cut[new] = cut > 0.0;
             let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
             if length > 0.0 {
-                mesh.normals[new as usize] = sum.map(|c| (c / length) as f32);
+                mesh.normals[new] = sum.map(|c| (c / length) as f32);
             }
         }
         Ok(mesh)

@@ -34,23 +34,23 @@ pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError>
     let hits = [0, 1, 2].map(|axis| lattice.hits(axis));
     let find = |axis: usize, at: [usize; 3]| hits[axis].find(&lattice, at);
     // Vertices, slab after slab of cells.
-    let slabs: Vec<Slab> = (0..lattice.points[0] - 1)
+    let mut slabs: Vec<Slab> = (0..lattice.points[0] - 1)
         .into_par_iter()
         .map(|i| Slab::new(&lattice, i, &find))
         .collect();
     check_vertices(slabs.iter().map(|slab| slab.vertices.len()).sum(), most)?;
     let mut mesh = Mesh::default();
     let mut first = Vec::with_capacity(slabs.len());
-    for slab in &slabs {
+    for slab in &mut slabs {
         first.push(mesh.vertices.len() as u32);
-        mesh.vertices.extend(&slab.vertices);
-        mesh.normals.extend(&slab.normals);
-        mesh.cut.extend(&slab.cut);
+        mesh.vertices.extend(std::mem::take(&mut slab.vertices));
+        mesh.normals.extend(std::mem::take(&mut slab.normals));
+        mesh.cut.extend(std::mem::take(&mut slab.cut));
     }
     let vertex = |cell: [usize; 3], edge: usize| {
         let sheet = CELLS[usize::from(lattice.kind(cell))].sheet[edge];
         let [i, j, k] = cell;
-        first[i] + slabs[i].first[j * (lattice.points[2] - 1) + k] + u32::from(sheet)
+        first[i] + slabs[i].of_cell(j, k) + u32::from(sheet)
     };
     // Triangles, slab after slab of lines; then those that need extra vertices, one after the other.
     let slabs: Vec<(usize, usize)> = (0..3)
@@ -92,8 +92,10 @@ struct Slab {
     vertices: Vec<[f64; 3]>,
     normals: Vec<[f32; 3]>,
     cut: Vec<bool>,
-    /// The number of the first vertex of each cell.
-    first: Vec<u32>,
+    /// The third number of the cell of each vertex,
+    levels: Vec<u32>,
+    /// and the first vertex of the cells with each second number.
+    rows: Vec<u32>,
 }
 
 impl Slab {
@@ -103,11 +105,14 @@ impl Slab {
             vertices: Vec::new(),
             normals: Vec::new(),
             cut: Vec::new(),
-            first: Vec::with_capacity(rows * levels),
+            levels: Vec::new(),
+            rows: Vec::with_capacity(rows + 1),
         };
         let mut corners = 0;
         for (j, k) in (0..rows).flat_map(|j| (0..levels).map(move |k| (j, k))) {
-            slab.first.push(slab.vertices.len() as u32);
+            if k == 0 {
+                slab.rows.push(slab.vertices.len() as u32);
+            }
             let cell = [i, j, k];
             // The upper corners of the cell below are the lower ones of this.
             corners = if k == 0 {
@@ -128,12 +133,21 @@ impl Slab {
                     }
                 }
                 let [lower, upper] = [0, 1].map(|d| [0, 1, 2].map(|c| lattice.coordinate(c, cell[c] + d)));
+                slab.levels.push(k as u32);
                 slab.vertices.push(planes.meet(lower, upper));
                 slab.normals.push(planes.normal());
                 slab.cut.push(planes.is_cut());
             }
         }
+        slab.rows.push(slab.vertices.len() as u32);
         slab
+    }
+
+    /// The first vertex of a cell.
+    fn of_cell(&self, j: usize, k: usize) -> u32 {
+        let [from, to] = [0, 1].map(|after| self.rows[j + after]);
+        let levels = &self.levels[from as usize..to as usize];
+        from + levels.partition_point(|level| (*level as usize) < k) as u32
     }
 }
 

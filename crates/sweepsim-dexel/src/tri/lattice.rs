@@ -11,7 +11,8 @@ pub(super) struct Lattice<'a> {
     step: [f64; 3],
     /// Points along each axis, with the rim.
     pub points: [usize; 3],
-    inside: Vec<bool>,
+    /// A bit for each point, those with one first number in whole words.
+    inside: Vec<u64>,
     /// Points where the sets disagree.
     pub disagreements: usize,
 }
@@ -30,9 +31,9 @@ impl<'a> Lattice<'a> {
             inside: Vec::new(),
             disagreements: 0,
         };
-        let [columns, rows, levels] = lattice.points;
-        let slabs: Vec<(Vec<bool>, usize)> = (0..columns).into_par_iter().map(|i| lattice.slab(i)).collect();
-        lattice.inside = Vec::with_capacity(columns * rows * levels);
+        let columns = lattice.points[0];
+        let slabs: Vec<(Vec<u64>, usize)> = (0..columns).into_par_iter().map(|i| lattice.slab(i)).collect();
+        lattice.inside = Vec::with_capacity(columns * lattice.words());
         for (slab, disagreements) in slabs {
             lattice.inside.extend(slab);
             lattice.disagreements += disagreements;
@@ -41,10 +42,10 @@ impl<'a> Lattice<'a> {
     }
 
     /// The points with a first number, by the majority of the sets.
-    fn slab(&self, i: usize) -> (Vec<bool>, usize) {
+    fn slab(&self, i: usize) -> (Vec<u64>, usize) {
         let [columns, rows, levels] = self.points;
         if i == 0 || i == columns - 1 {
-            return (vec![false; rows * levels], 0);
+            return (vec![0; self.words()], 0);
         }
         let mut votes = vec![0_u8; rows * levels];
         let index = |j: usize, k: usize| j * levels + k;
@@ -66,7 +67,16 @@ impl<'a> Lattice<'a> {
             }
         }
         let open = votes.iter().filter(|votes| (1..3).contains(*votes)).count();
-        (votes.iter().map(|votes| *votes >= 2).collect(), open)
+        let word = |votes: &[u8]| {
+            let bits = votes.iter().rev();
+            bits.fold(0, |word, votes| word << 1 | u64::from(*votes >= 2))
+        };
+        (votes.chunks(64).map(word).collect(), open)
+    }
+
+    /// The words of the points with one first number.
+    fn words(&self) -> usize {
+        (self.points[1] * self.points[2]).div_ceil(64)
     }
 
     /// The numbers of the points along an axis from a lower to below an upper height.
@@ -94,7 +104,9 @@ impl<'a> Lattice<'a> {
     }
 
     pub fn inside(&self, point: [usize; 3]) -> bool {
-        self.inside[self.index(point)]
+        let [i, j, k] = point;
+        let at = j * self.points[2] + k;
+        self.inside[i * self.words() + at / 64] >> (at % 64) & 1 == 1
     }
 
     /// Which corners of a cell have material: bits.
@@ -112,29 +124,37 @@ impl<'a> Lattice<'a> {
     /// The interval ends along an axis, one for each edge whose ends differ.
     pub fn hits(&self, axis: usize) -> Hits {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let lines: Vec<Vec<Vec<Hit>>> = (0..self.points[u])
-            .into_par_iter()
-            .map(|i| (0..self.points[v]).map(|j| self.line(axis, i, j)).collect())
-            .collect();
-        let mut hits = Hits {
+        // The hits of a row of lines, and where those of each line end.
+        let row = |i: usize| -> (Vec<Hit>, Vec<usize>) {
+            let mut hits = Vec::new();
+            let end = |j: usize| {
+                self.line(axis, i, j, &mut hits);
+                hits.len()
+            };
+            let ends = (0..self.points[v]).map(end).collect();
+            (hits, ends)
+        };
+        let rows: Vec<_> = (0..self.points[u]).into_par_iter().map(row).collect();
+        let mut all = Hits {
             axis,
             first: vec![0],
-            hits: Vec::new(),
+            hits: Vec::with_capacity(rows.iter().map(|(hits, _)| hits.len()).sum()),
         };
-        for line in lines.into_iter().flatten() {
-            hits.hits.extend(line);
-            hits.first.push(hits.hits.len());
+        for (hits, ends) in rows {
+            let before = all.hits.len();
+            all.hits.extend(hits);
+            all.first.extend(ends.into_iter().map(|end| before + end));
         }
-        hits
+        all
     }
 
-    fn line(&self, axis: usize, i: usize, j: usize) -> Vec<Hit> {
+    /// Appends the hits of a line.
+    fn line(&self, axis: usize, i: usize, j: usize, hits: &mut Vec<Hit>) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         if i == 0 || j == 0 || i == self.points[u] - 1 || j == self.points[v] - 1 {
-            return Vec::new();
+            return;
         }
         let intervals = self.sets[axis].intervals(i - 1, j - 1);
-        let mut hits = Vec::new();
         let mut point = [0; 3];
         (point[u], point[v]) = (i, j);
         let mut before = false;
@@ -178,7 +198,6 @@ impl<'a> Lattice<'a> {
                 cut: end.is_some_and(|end| end.source.is_cut()),
             });
         }
-        hits
     }
 
     /// Where a hit on the edge from a point is.

@@ -17,8 +17,8 @@ const POINT_ANGLE: f64 = 118.0;
 const DIAMETER: f64 = 6.0;
 /// The number of dexels across the radius of the smallest tool,
 const ACROSS_RADIUS: f64 = 5.0;
-/// and the least and the largest number along the longer side of the stock.
-const CELLS: [f64; 2] = [100.0, 1000.0];
+/// and the least and the largest number along the longer side of the stock: more take long, and much memory.
+const CELLS: [f64; 2] = [100.0, 650.0];
 
 impl Drafter<'_> {
     /// The numbers of the tools in use, in the order of the program; tool 1 if it names none.

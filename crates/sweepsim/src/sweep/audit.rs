@@ -9,7 +9,6 @@ use crate::sweep::schedule::SweepJob;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Operation, cover};
 use sweepsim_solve::Cause;
 
@@ -28,31 +27,30 @@ pub(crate) struct SweptLines {
 }
 
 impl SweptLines {
-    /// Both together.
-    pub fn united(self, other: Self) -> Self {
-        let unresolved = [self.unresolved, other.unresolved].concat();
-        let crossings = self.crossings + other.crossings;
-        if self.lines.is_empty() {
-            let lines = other.lines;
-            return Self {
-                lines,
-                unresolved,
-                crossings,
-            };
+    /// All together: of two ends at the same height, that of the first is kept.
+    pub fn united(all: Vec<Self>) -> Self {
+        let several = all.iter().filter(|one| !one.lines.is_empty()).count() > 1;
+        let mut whole = Self::default();
+        for one in all {
+            whole.lines.extend(one.lines);
+            whole.unresolved.extend(one.unresolved);
+            whole.crossings += one.crossings;
         }
-        let mut all: BTreeMap<u32, Vec<Interval>> = self.lines.into_iter().collect();
-        for (line, more) in other.lines {
-            let own = all.entry(line).or_default();
-            own.extend(more);
-            if let Ok(set) = IntervalSet::from_intervals(own.iter().copied()) {
-                *own = set.pieces().to_vec();
-            }
+        if several {
+            // A stable sort: those of a line stay in their order.
+            whole.lines.sort_by_key(|(line, _)| *line);
+            whole.lines.dedup_by(|(line, more), (last, own)| {
+                let same = line == last;
+                if same {
+                    own.append(more);
+                    if let Ok(set) = IntervalSet::from_intervals(own.iter().copied()) {
+                        *own = set.pieces().to_vec();
+                    }
+                }
+                same
+            });
         }
-        Self {
-            lines: all.into_iter().collect(),
-            unresolved,
-            crossings,
-        }
+        whole
     }
 }
 
@@ -90,20 +88,18 @@ impl SweepJob<'_> {
             mut open,
             ..
         } = self.harvest(chunk)?;
-        let mut crossings = lists.concat();
+        let crossings = by_line(&lists);
         self.reuse(lists);
         open.sort_by_key(|(line, _)| *line);
         open.dedup_by_key(|(line, _)| *line);
-        // A stable sort: the order of crossings on a line does not depend on threads.
-        crossings.par_sort_by_key(|(line, _)| *line);
         // A line with an open box may have no crossing at all.
         let missing = |line: &u32| crossings.binary_search_by_key(line, |(line, _)| *line).is_err();
         let lonely: Vec<u32> = open.iter().map(|(line, _)| *line).filter(missing).collect();
         // How many fail their audit is not known yet: few, if they were asked for one by one.
         let most = self.repairs.of_each(open.len().max(FEW));
-        let solve = |line: u32, group: &[Numbered]| {
+        let solve = |line: u32, group: &[Numbered], lists: &mut Lists| {
             let certain = open.binary_search_by_key(&line, |(line, _)| *line).is_err();
-            let counted = certain.then(|| self.intervals(group).ok()).flatten();
+            let counted = certain.then(|| self.intervals(group, lists).ok()).flatten();
             let found = match counted {
                 Some(intervals) => Ok(intervals),
                 None => self.with_space(|space| self.repair(chunk, line, Repair::first(most), space).0),
@@ -112,9 +108,9 @@ impl SweepJob<'_> {
         };
         let mut solved: Vec<_> = crossings
             .par_chunk_by(|a, b| a.0 == b.0)
-            .map(|group| solve(group[0].0, group))
+            .map_init(Lists::default, |lists, group| solve(group[0].0, group, lists))
             .collect();
-        solved.extend(lonely.into_iter().map(|line| solve(line, &[])));
+        solved.extend(lonely.into_iter().map(|line| solve(line, &[], &mut Lists::default())));
         solved.sort_by_key(|(line, _)| *line);
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
@@ -284,22 +280,43 @@ impl SweepJob<'_> {
         match open {
             Some(Cause::Boxes) => Err(UnresolvedReason::Budget),
             Some(_) => Err(UnresolvedReason::SmallestBox),
-            None => self.intervals(group).map_err(UnresolvedReason::Audit),
+            None => self
+                .intervals(group, &mut Lists::default())
+                .map_err(UnresolvedReason::Audit),
         }
     }
 
     /// The intervals of one line.
-    fn intervals(&self, group: &[Numbered]) -> Result<Vec<Interval>, AuditFailure> {
-        let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
+    fn intervals(&self, group: &[Numbered], lists: &mut Lists) -> Result<Vec<Interval>, AuditFailure> {
+        let (crossings, intervals) = lists;
+        crossings.clear();
+        crossings.extend(group.iter().map(|(_, crossing)| *crossing));
         match self.boundary {
             BoundaryOperator::Coverage => {
-                let mut intervals = Vec::new();
-                cover(&mut crossings, self.tolerances.same_height(), &mut intervals)?;
-                Ok(intervals)
+                cover(crossings, self.tolerances.same_height(), intervals)?;
+                Ok(intervals.clone())
             }
-            BoundaryOperator::Paper => Ok(in_order(&mut crossings)),
+            BoundaryOperator::Paper => Ok(in_order(crossings)),
         }
     }
+}
+
+/// Memory for the crossings and the intervals of a line.
+type Lists = (Vec<Crossing>, Vec<Interval>);
+
+/// All crossings sorted by line, those of a line in the order of the lists, which does not depend on threads.
+fn by_line(lists: &[Vec<Numbered>]) -> Vec<Numbered> {
+    let all = lists.concat();
+    // Numbers are sorted faster than crossings are.
+    let mut order: Vec<u64> = (0_u64..)
+        .zip(&all)
+        .map(|(at, (line, _))| u64::from(*line) << 32 | at)
+        .collect();
+    order.par_sort_unstable();
+    order
+        .into_iter()
+        .map(|key| all[(key & u64::from(u32::MAX)) as usize])
+        .collect()
 }
 
 /// The intervals that Algorithm 2 makes of the crossings of a line, with overlapping ones united. Where crossings are missing, some may have zero

@@ -21,7 +21,7 @@ pub use probe::{Probe, probe};
 pub use ray::{Ray, RayError};
 pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
-pub(crate) use schedule::{CHUNK, Spaces};
+pub(crate) use schedule::{CHUNK, Spaces, SpareLists};
 pub(crate) use simulation::STRETCH;
 pub(crate) use simulation::heights;
 pub use simulation::{

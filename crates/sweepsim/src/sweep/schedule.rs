@@ -72,6 +72,9 @@ impl Plan {
 /// Workspaces of one tool that are not in use, for any tolerances.
 pub(crate) type Spaces = Arc<Mutex<Vec<Workspace>>>;
 
+/// Lists of crossings that are not in use, empty.
+pub(crate) type SpareLists = Arc<Mutex<Vec<Vec<Numbered>>>>;
+
 /// What all chunks of a sweep share.
 pub(crate) struct SweepJob<'a> {
     pub tool: &'a Tool,
@@ -89,8 +92,7 @@ pub(crate) struct SweepJob<'a> {
     /// What repairs may cost.
     pub repairs: Arc<RepairBudget>,
     pub spaces: Spaces,
-    /// Lists of crossings that are not in use, empty.
-    pub lists: Arc<Mutex<Vec<Vec<Numbered>>>>,
+    pub lists: SpareLists,
     pub monitor: &'a dyn Monitor,
 }
 

@@ -3,7 +3,7 @@
 use crate::error::SweepError;
 use crate::methods::lattice::LineMask;
 use crate::sweep::heights::{Box3, HeightMap, window};
-use crate::sweep::{CHUNK, Method, Options, Plan, Spaces, SweptLines};
+use crate::sweep::{CHUNK, Method, Options, Plan, Spaces, SpareLists, SweptLines};
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
@@ -26,6 +26,7 @@ pub(super) struct MovingSolid<'a> {
     /// One for each block of parts.
     hulls: Vec<Box3>,
     spaces: Spaces,
+    lists: SpareLists,
 }
 
 /// A bound on how far any point of the solid moves.
@@ -82,6 +83,7 @@ impl<'a> MovingSolid<'a> {
             tool,
             plan,
             spaces,
+            lists: SpareLists::default(),
         }
     }
 
@@ -150,6 +152,8 @@ impl<'a> MovingSolid<'a> {
     /// The parts of these moves that come near material, in runs of consecutive ones, and the lines with that material.
     pub fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, Vec<u32>)> {
         let mut runs: Vec<(Range<usize>, Vec<u32>)> = Vec::new();
+        // The lines of the last run: neighbouring parts share most of them.
+        let mut marked = vec![0_u64; grid.len().div_ceil(64)];
         let parts = self.parts(moves);
         let mut from = parts.start;
         // Blocks of parts that are beside the grid are left out at once.
@@ -163,23 +167,25 @@ impl<'a> MovingSolid<'a> {
             let Some(window) = window(grid, &self.boxes[at]) else {
                 continue;
             };
-            let mut lines = Vec::new();
+            let starts = !matches!(runs.last(), Some((run, _)) if run.end == at && run.len() < CHUNK);
+            if starts && let Some((_, lines)) = runs.last() {
+                lines.iter().for_each(|line| marked[*line as usize / 64] = 0);
+            }
+            let (mut is_near, mut lines) = (false, Vec::new());
             material.visit(window, self.boxes[at][2], &mut |line| {
-                lines.push(line);
+                is_near = true;
+                let (word, bit) = (&mut marked[line as usize / 64], 1 << (line % 64));
+                if *word & bit == 0 {
+                    *word |= bit;
+                    lines.push(line);
+                }
                 true
             });
-            if lines.is_empty() {
-                continue;
-            }
             match runs.last_mut() {
-                Some((run, all)) if run.end == at && run.len() < CHUNK => {
+                _ if !is_near => {}
+                Some((run, all)) if !starts => {
                     run.end = at + 1;
                     all.append(&mut lines);
-                    // Neighbouring parts share most of their lines.
-                    if all.len() > 2 * grid.len() {
-                        all.sort_unstable();
-                        all.dedup();
-                    }
                 }
                 _ => runs.push((at..at + 1, lines)),
             }
@@ -196,14 +202,14 @@ impl<'a> MovingSolid<'a> {
         options: &Options,
         monitor: &dyn Monitor,
     ) -> Result<SweptLines, SweepError> {
-        let mut all = SweptLines::default();
+        let mut all = Vec::new();
         for (parts, lines) in self.near(moves, grid, material) {
             let Some(mask) = LineMask::new(grid, lines) else {
                 continue;
             };
-            all = all.united(self.swept(self.slice(parts), (grid, top), &mask, options, monitor)?);
+            all.push(self.swept(self.slice(parts), (grid, top), &mask, options, monitor)?);
         }
-        Ok(all)
+        Ok(SweptLines::united(all))
     }
 
     /// What the solid sweeps of the marked lines along these parts, up to `top`.
@@ -225,6 +231,7 @@ impl<'a> MovingSolid<'a> {
             .plan
             .job((self.tool, self.plan.parts.len()), grid, &options, monitor);
         job.spaces = Arc::clone(&self.spaces);
+        job.lists = Arc::clone(&self.lists);
         let short = match method {
             Method::Mixed => self.plan.short.shortest(self.tool, parts, top + self.plan.gap()),
             _ => None,
@@ -233,12 +240,8 @@ impl<'a> MovingSolid<'a> {
             job = job.with_tool(short);
         }
         job.mask = Some(Cow::Borrowed(mask));
-        let mut swept = SweptLines::default();
-        for chunk in parts.chunks(CHUNK) {
-            let more = job.swept_lines(chunk)?;
-            swept = swept.united(more);
-        }
-        Ok(swept)
+        let swept = parts.chunks(CHUNK).map(|chunk| job.swept_lines(chunk));
+        Ok(SweptLines::united(swept.collect::<Result<_, _>>()?))
     }
 }
 

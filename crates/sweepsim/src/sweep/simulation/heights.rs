@@ -10,6 +10,8 @@ const BLOCK: usize = 16;
 pub(crate) struct HeightMap {
     cells: [usize; 2],
     lines: Vec<[f64; 2]>,
+    /// The widest gap of each line at first, NaN without one; empty if no line has one.
+    gaps: Vec<[f64; 2]>,
     blocks: Vec<[f64; 2]>,
     top: f64,
 }
@@ -23,16 +25,29 @@ impl HeightMap {
     pub fn new(dexels: &Dexels) -> Self {
         let cells = dexels.grid().cells();
         let mut lines = vec![EMPTY; dexels.grid().len()];
+        let mut gaps = Vec::new();
         for (line, intervals) in dexels.iter() {
             let mut heights = intervals.heights();
-            if let Some([lower, upper]) = heights.next() {
-                let top = heights.next_back().map_or(upper, |[_, upper]| upper);
-                lines[line] = [lower, top];
+            let Some([lower, mut top]) = heights.next() else {
+                continue;
+            };
+            let mut widest = [top, top];
+            for [lower, upper] in heights {
+                if lower - top > widest[1] - widest[0] {
+                    widest = [top, lower];
+                }
+                top = upper;
+            }
+            lines[line] = [lower, top];
+            if widest[0] < widest[1] {
+                gaps.resize(lines.len(), [f64::NAN; 2]);
+                gaps[line] = widest;
             }
         }
         let mut map = Self {
             cells,
             lines,
+            gaps,
             blocks: vec![EMPTY; cells[0].div_ceil(BLOCK) * cells[1].div_ceil(BLOCK)],
             top: f64::NEG_INFINITY,
         };
@@ -85,6 +100,10 @@ impl HeightMap {
     /// never did.
     pub fn visit(&self, [is, js]: [(usize, usize); 2], z: [f64; 2], visit: &mut dyn FnMut(u32) -> bool) -> bool {
         let meets = |[lower, upper]: [f64; 2]| lower <= z[1] && upper >= z[0];
+        let is_in_gap = |line: usize| {
+            let gap = self.gaps.get(line);
+            gap.is_some_and(|[from, to]| *from < z[0] && z[1] < *to)
+        };
         for bi in is.0 / BLOCK..=is.1 / BLOCK {
             for bj in js.0 / BLOCK..=js.1 / BLOCK {
                 if !meets(self.blocks[self.block(bi * BLOCK, bj * BLOCK)]) {
@@ -93,7 +112,7 @@ impl HeightMap {
                 for i in is.0.max(bi * BLOCK)..=is.1.min((bi + 1) * BLOCK - 1) {
                     for j in js.0.max(bj * BLOCK)..=js.1.min((bj + 1) * BLOCK - 1) {
                         let line = i * self.cells[1] + j;
-                        if meets(self.lines[line]) && !visit(line as u32) {
+                        if meets(self.lines[line]) && !is_in_gap(line) && !visit(line as u32) {
                             return false;
                         }
                     }
