@@ -311,7 +311,8 @@ fn what_is_left_out_comes_back() {
         }
         Ok(())
     });
-    // None of these. Of thousands, a few are refused, or taken for another one that fits, without a word: a known gap.
+    // None of these. Of thousands, a few are refused, or taken for another one that fits: a known gap, and why a note
+    // says to compare.
     assert_eq!(wrong.get(), 0);
     ran.unwrap();
     // Arcs of which only the end and the radius are said may lie on either side.

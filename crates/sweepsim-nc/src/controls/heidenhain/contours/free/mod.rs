@@ -107,6 +107,8 @@ impl Reader<'_> {
             whole(unsolved(&elements, &stuck))
         })?;
         self.free.steps += found.steps;
+        self.track
+            .note("a free contour is solved from what its blocks say: compare it with the drawing");
         if found.count > 1 {
             let [first, last] = [elements.first(), elements.last()].map(|one| one.map_or(0, |one| one.line));
             let what = format!("the free contour of lines {first} to {last}");
