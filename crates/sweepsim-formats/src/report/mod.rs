@@ -223,6 +223,9 @@ pub struct ReportedFinding {
     /// The body that touches, if it is not the cutter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
+    /// The two bodies that meet (`machine`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<String>,
     /// The path of the job, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<usize>,

@@ -50,8 +50,8 @@ pub(super) fn machine(source: &PageSource, made: &Courses) -> Option<(Machine, V
         .filter(|finding| finding.kind == "machine");
     let contacts = contacts.filter_map(|finding| {
         let clock = made.clock(finding.path?, finding.r#move?, finding.time?)?;
-        let detail = finding.detail.as_deref()?;
-        let met = names.iter().enumerate().filter(|(_, name)| detail.contains(*name));
+        let met = names.iter().enumerate();
+        let met = met.filter(|(_, name)| finding.bodies.iter().any(|body| body == *name));
         Some((clock, met.map(|(number, _)| number as u16).collect()))
     });
     let machine = Machine {

@@ -21,8 +21,7 @@ pub(super) struct Crowd {
 
 impl Crowd {
     pub fn new(job: &Job, path: &JobPath, on: &OnMachine) -> Self {
-        let (chain, machine) = (on.course.chain(), on.course.machine());
-        let description = machine.description();
+        let (chain, description) = (on.course.chain(), on.course.machine().description());
         let mut bodies = on.bodies.to_vec();
         let mut loose = BTreeSet::new();
         let own = bodies.len();
@@ -33,7 +32,7 @@ impl Crowd {
         };
         // What is on the table.
         let fixtures = job.setups.get(path.setup).map_or(&[][..], |setup| &setup.fixtures);
-        let on_table = std::iter::once(("stock".to_owned(), &job.stock));
+        let on_table = std::iter::once(("raw stock".to_owned(), &job.stock));
         let fixtures = fixtures.iter().enumerate();
         let on_table = on_table.chain(fixtures.map(|(k, solid)| (format!("fixture {}", k + 1), solid)));
         for (name, stock) in on_table {
@@ -48,7 +47,7 @@ impl Crowd {
         }
         let table = own..bodies.len();
         // What the spindle holds: its tip is a tool's length below the nose.
-        let tip = [0.0, 0.0, -machine.tool_length(Some(path.tool))];
+        let tip = [0.0, 0.0, -on.course.tool_length()];
         let tool = job
             .tools
             .get(&path.tool)

@@ -170,6 +170,7 @@ impl Seen {
         finding.depth = contact.depth;
         finding.place = tip(path, moved, time);
         let [a, b] = names;
+        finding.bodies = names.map(str::to_owned).into();
         let how = match (contact.distance > 0.0, contact.depth > 0.0) {
             (true, _) => format!(" within {} mm", words::measure(contact.distance)),
             (false, true) => format!(", at most {} mm deep in this move", words::measure(contact.depth)),

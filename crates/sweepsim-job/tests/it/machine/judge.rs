@@ -81,7 +81,7 @@ impl Judge {
         }
         let own = hulls.len();
         hulls.push(Hull {
-            name: "stock".into(),
+            name: "raw stock".into(),
             link: 0,
             points: corners(stock[0], stock[1]),
         });

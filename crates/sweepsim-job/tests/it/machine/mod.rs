@@ -257,3 +257,33 @@ fn a_verdict_holds_for_other_places_and_lengths() {
         );
     }
 }
+
+/// Ready machines of other sizes move about their home without a collision.
+#[test]
+fn ready_machines_are_free_at_home() {
+    for name in Machine::names() {
+        let machine = Machine::named(name)
+            .and_then(|machine| machine.kinematics)
+            .expect("axes");
+        let turns: String = machine.rotary().map(|axis| format!(" {}30", axis.letter)).collect();
+        let program = format!("G21 G90\nT1 M6\nS1000 M3\nG1 X0 Y0 Z300 F5000\nG1 X20{turns}\nM30\n");
+        for sizes in [SIZES, ",table=500,travel=800x700x600,zero=120,length=180"] {
+            let outcome = run(
+                &format!("{name}{sizes}"),
+                &program,
+                [[-40.0, -30.0, -50.0], [40.0, 30.0, 0.0]],
+            );
+            let statements = outcome.report().statements.as_ref().expect("proofs");
+            let own = statements
+                .iter()
+                .find(|statement| statement.about == "machine")
+                .expect("bodies");
+            assert_eq!(
+                own.state,
+                StatementState::Proven,
+                "{name}{sizes}: {:?}",
+                outcome.findings()
+            );
+        }
+    }
+}

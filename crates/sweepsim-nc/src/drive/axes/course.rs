@@ -14,6 +14,7 @@ use crate::model::pose::ProgramPose;
 pub struct AxesCourse {
     machine: Arc<Kinematics>,
     chain: Chain,
+    tool_length: f64,
     pieces: Vec<Piece>,
 }
 
@@ -48,7 +49,8 @@ impl AxesCourse {
     #[must_use]
     pub fn new(machine: Arc<Kinematics>, start: &ProgramPose, at: &Position) -> Self {
         let chain = machine.chain();
-        let values = chain.values(&machine, at, machine.tool_length(start.tool));
+        let tool_length = machine.tool_length(start.tool);
+        let values = chain.values(&machine, at, tool_length);
         let still = Piece {
             from: values,
             to: values,
@@ -61,6 +63,7 @@ impl AxesCourse {
         Self {
             machine,
             chain,
+            tool_length,
             pieces: vec![still],
         }
     }
@@ -75,6 +78,12 @@ impl AxesCourse {
     #[must_use]
     pub fn machine(&self) -> &Kinematics {
         &self.machine
+    }
+
+    /// From the spindle's nose to the tip, as the path's first pose has it.
+    #[must_use]
+    pub fn tool_length(&self) -> f64 {
+        self.tool_length
     }
 
     /// Adds the move from one pose and position to another one, which is the move `number` of the path.
