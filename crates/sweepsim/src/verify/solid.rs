@@ -153,7 +153,7 @@ impl<'a> MovingSolid<'a> {
     pub fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, Vec<u32>)> {
         let mut runs: Vec<(Range<usize>, Vec<u32>)> = Vec::new();
         // The lines of the last run: neighbouring parts share most of them.
-        let mut marked = vec![0_u64; grid.len().div_ceil(64)];
+        let (mut marked, mut has_marks) = (vec![0_u64; grid.len().div_ceil(64)], false);
         let parts = self.parts(moves);
         let mut from = parts.start;
         // Blocks of parts that are beside the grid are left out at once.
@@ -168,7 +168,10 @@ impl<'a> MovingSolid<'a> {
                 continue;
             };
             let starts = !matches!(runs.last(), Some((run, _)) if run.end == at && run.len() < CHUNK);
-            if starts && let Some((_, lines)) = runs.last() {
+            if starts
+                && std::mem::take(&mut has_marks)
+                && let Some((_, lines)) = runs.last()
+            {
                 lines.iter().for_each(|line| marked[*line as usize / 64] = 0);
             }
             let (mut is_near, mut lines) = (false, Vec::new());
@@ -181,6 +184,7 @@ impl<'a> MovingSolid<'a> {
                 }
                 true
             });
+            has_marks |= is_near;
             match runs.last_mut() {
                 _ if !is_near => {}
                 Some((run, all)) if !starts => {
