@@ -55,7 +55,7 @@ pub struct MachineDescription {
     /// How near its bodies may come to each other, in mm.
     #[serde(default)]
     pub clearance: f64,
-    /// Pairs of bodies, by their names, that are not looked at, besides those of one link or of neighbouring ones.
+    /// Pairs of bodies, by their names, that are not looked at, besides those on one link or on two that an axis joins.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub may_touch: Vec<(String, String)>,
 }

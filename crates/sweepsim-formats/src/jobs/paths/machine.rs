@@ -53,6 +53,10 @@ fn solids(shape: &BodyShape, within: Option<&FilePath>) -> Result<Vec<Convex>, F
             }
             let mesh = read_mesh_file(file)?;
             let soup = mesh.soup().unwrap_or_default();
+            soup.check_closed().map_err(|error| {
+                let problem = Problem::syntax(format!("a body of a machine is what its surface encloses: {error}"));
+                FormatError::new(problem, None).in_file(file)
+            })?;
             soup.triangles.into_iter().map(Convex::Triangle).collect()
         }
         _ => Vec::new(),

@@ -66,9 +66,8 @@ impl Crowd {
                 Convex::cones(tip, Vector3::z(), &outline),
             ));
         }
-        // Links next to each other touch.
-        let links: BTreeSet<usize> = bodies[..own].iter().map(|body| body.link).collect();
-        let neighbours = |a: usize, b: usize| links.range(a.min(b)..=a.max(b)).count() <= 2;
+        // Links that an axis joins touch.
+        let neighbours = |a: usize, b: usize| a.abs_diff(b) <= 1;
         let may_touch = |a: &str, b: &str| {
             let same = |(c, d): &(String, String)| (c == a && d == b) || (c == b && d == a);
             description.may_touch.iter().any(same)

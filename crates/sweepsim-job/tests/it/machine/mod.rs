@@ -8,7 +8,7 @@ mod judge;
 use judge::Judge;
 
 use std::fmt::Write;
-use sweepsim_job::dexel::Stock;
+use sweepsim_job::dexel::{Stock, TriangleSoup};
 use sweepsim_job::motion::Tool;
 use sweepsim_job::{DialectOptions, Judging, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
 use sweepsim_nc::Machine;
@@ -286,4 +286,79 @@ fn ready_machines_are_free_at_home() {
             );
         }
     }
+}
+
+/// A guard from a file is passed or met by the spindle; one that is open, or missing, is an error that names it.
+#[test]
+fn bodies_from_files_are_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let stl = |triangles: &[[[f64; 3]; 3]]| {
+        let mut text = "solid guard\n".to_owned();
+        for triangle in triangles {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in triangle {
+                writeln!(text, "vertex {x} {y} {z}").unwrap();
+            }
+            text += "endloop\nendfacet\n";
+        }
+        text + "endsolid guard\n"
+    };
+    let guard = TriangleSoup::block([100.0, -50.0, -50.0], [150.0, 50.0, 40.0]).triangles;
+    std::fs::write(file("guard.stl"), stl(&guard)).unwrap();
+    std::fs::write(file("open.stl"), stl(&guard[1..])).unwrap();
+    let request = |guard: &str| {
+        let spindle = r#"(name: "spindle", on: "Z", shape: Cylinder(from: (0, 0, 0), to: (0, 0, 100), radius: 40))"#;
+        let body = format!(r#"(name: "guard", on: "base", shape: File("{guard}"))"#);
+        let table = "(name: \"table\", on: \"X\", shape: Block(min: (-1, -1, -9), max: (1, 1, -8)))";
+        let linear = "(letter: 'X', carries: Part), (letter: 'Y'), (letter: 'Z')";
+        let machine = format!(
+            "Machine(name: \"mill\", tool_length: 20, linear: [{linear}], bodies: [{body}, {spindle}, {table}], may_touch: [(\"guard\", \"table\")])"
+        );
+        std::fs::write(file("mill.ron"), machine).unwrap();
+        let mut options = ProgramOptions::default();
+        options.dialect.machine = Some(file("mill.ron").display().to_string());
+        Request::from_program(
+            "guard.nc",
+            "G21 G90\nT1 M6\nS900 M3\nG1 X0 Y0 Z90 F900\nG1 Y30\nG1 Z15\nM30\n",
+        )
+        .program(options)
+        .tool(1, Tool::flat(5.0, 15.0).unwrap())
+        .stock(Stock::Block {
+            min: [-20.0; 3],
+            max: [20.0, 20.0, 0.0],
+        })
+        .cells([8, 8])
+    };
+    let error = |guard: &str| match request(guard).plan() {
+        Ok(_) => panic!("{guard} is taken"),
+        Err(error) => error.to_string(),
+    };
+    assert!(
+        error("open.stl").contains("what its surface encloses"),
+        "{}",
+        error("open.stl")
+    );
+    assert!(error("open.stl").contains("open.stl") && error("none.stl").contains("none.stl"));
+    let state = |guard: &str| {
+        let outcome = request(guard).plan().unwrap().run(&()).unwrap();
+        let statements = outcome.report().statements.as_ref().expect("proofs");
+        let own = statements
+            .iter()
+            .find(|statement| statement.about == "machine")
+            .expect("bodies");
+        let found = outcome.findings().iter().filter(|finding| finding.kind == "machine");
+        (
+            own.state,
+            found
+                .map(|finding| (finding.line, finding.bodies.clone()))
+                .collect::<Vec<_>>(),
+        )
+    };
+    assert_eq!(state("guard.stl"), (StatementState::Proven, Vec::new()));
+    // The nose goes down to 35, beside a guard that is 40 high.
+    let near = TriangleSoup::block([30.0, -50.0, -50.0], [150.0, 50.0, 40.0]).triangles;
+    std::fs::write(file("near.stl"), stl(&near)).unwrap();
+    let bodies = ["guard", "spindle"].map(str::to_owned).to_vec();
+    assert_eq!(state("near.stl"), (StatementState::Refuted, vec![(Some(6), bodies)]));
 }
