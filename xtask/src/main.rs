@@ -9,6 +9,7 @@ mod others;
 mod pictures;
 mod plot;
 mod regress;
+mod release;
 mod standalone;
 mod stored;
 mod suites;
@@ -129,6 +130,12 @@ enum Command {
         #[arg(long)]
         as_built: bool,
     },
+    /// Checks what must hold of a release beyond the gate: takes many minutes.
+    Release {
+        /// Publishes nothing. Required: publishing itself is left to cargo.
+        #[arg(long, required = true)]
+        dry_run: bool,
+    },
     /// Prints what the command is made of, as a bill of materials in CycloneDX 1.6.
     Bom,
     /// Runs .ci/run, which must pass before a change is integrated.
@@ -233,6 +240,7 @@ fn main() -> ExitCode {
         Command::Cluster => cluster::run(),
         Command::Shards { plot, as_built } if cfg!(debug_assertions) && !plot && !as_built => in_release(),
         Command::Shards { plot, .. } => cluster::measure(plot),
+        Command::Release { .. } => release::dry_run(),
         Command::Bom => bom::bom().map(|text| {
             print!("{text}");
             true
