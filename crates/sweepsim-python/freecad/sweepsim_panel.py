@@ -30,6 +30,7 @@ def show(job):
     finally:
         bar.close()
     list_widget = QtGui.QListWidget()
+    list_widget.setWordWrap(True)
     for finding, operation in found.findings:
         label = operation.Label if operation else job.Label
         place = "%.3f, %.3f, %.3f" % tuple(finding.place)
