@@ -121,7 +121,7 @@ fn every_fixture_job_is_run_the_same() {
     assert!(all.len() >= 11);
     for job in all {
         let is_quick = job.ends_with("quickstart.ron");
-        let is_bracket = job.parent().is_some_and(|folder| folder.ends_with("verify"));
+        let is_bracket = job.ends_with("bracket.ron");
         let frames = is_quick.then_some(3);
         compare(&job, Task::Simulate, &ALL, frames, 7 + if is_quick { 3 } else { 0 });
         let few = [Output::Dexels, Output::Report];
