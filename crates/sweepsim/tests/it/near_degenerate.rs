@@ -309,7 +309,7 @@ fn all_are_cheap(methods: &[Method], distances: &[f64]) {
 
 #[test]
 fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
-    all_are_cheap(&[Method::General], &DISTANCES);
+    all_are_cheap(&[Method::General], &[1e-9, 1e-12, 0.0]);
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn so_it_does_by_all_methods() {
 #[test]
 #[ignore = "takes half a minute"]
 fn so_it_does_by_all_methods_at_all_distances() {
-    all_are_cheap(&METHODS[1..], &DISTANCES);
+    all_are_cheap(&METHODS, &DISTANCES);
 }
 
 /// Closed forms of a tool that leans by almost nothing, moving level or down.

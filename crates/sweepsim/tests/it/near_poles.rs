@@ -135,24 +135,24 @@ fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
         wrong.extend(
             over_poles()
                 .into_iter()
-                .filter_map(|family| is_cheap(method, family, &tool, &DISTANCES).err()),
+                .filter_map(|family| is_cheap(method, family, &tool, &[1e-9, 0.0]).err()),
         );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution,
+/// The first few free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution,
 /// and with poles over lines.
-fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
+fn free_form_is_cheap(tools: usize, methods: &[Method], list: &[Family], distances: &[f64]) {
     let mut wrong = Vec::new();
-    let tools = [
+    let all = [
         ("bud", bud()),
         ("pad", pad()),
         ("bit", bit()),
         ("ring", ring()),
         ("burr", burr()),
     ];
-    for tool in tools {
+    for tool in all.into_iter().take(tools) {
         for method in methods {
             let families = list.iter().filter(|(what, _)| !is_dear(*method, what, tool.0));
             wrong.extend(families.filter_map(|family| is_cheap(*method, *family, &tool, distances).err()));
@@ -176,14 +176,14 @@ fn is_dear(method: Method, what: &str, name: &str) -> bool {
 
 #[test]
 fn moves_on_curves_cost_at_most_thrice_their_generic_neighbour() {
-    free_form_is_cheap(&METHODS[..2], &over_poles_on_curves(), &[1e-9, 0.0]);
+    free_form_is_cheap(2, &METHODS[..2], &over_poles_on_curves(), &[1e-9, 0.0]);
 }
 
 #[test]
 #[ignore = "takes more than a minute"]
 fn so_do_all_families() {
     let list = [families(), over_poles(), over_poles_on_curves()].concat();
-    free_form_is_cheap(&METHODS[..2], &list, &DISTANCES);
+    free_form_is_cheap(5, &METHODS[..2], &list, &DISTANCES);
     let over_all = [over_poles(), over_poles_on_curves()].concat();
-    free_form_is_cheap(&METHODS[2..], &over_all, &DISTANCES);
+    free_form_is_cheap(5, &METHODS[2..], &over_all, &DISTANCES);
 }
