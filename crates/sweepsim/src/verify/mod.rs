@@ -37,4 +37,4 @@ pub use driver::{
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use record::{Judgement, TileRecord};
 pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
-pub use target::{Target, TargetError, TargetRegion};
+pub use target::{Target, TargetError, TargetRegion, TargetShape};
