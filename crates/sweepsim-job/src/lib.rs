@@ -69,7 +69,7 @@ pub use request::{
     DialectOptions, Directions, Input, Judging, Output, ProgramOptions, Request, StockOption, SweepOptions, Task,
     ViewOptions,
 };
-pub use run::{Merge, Outcome, PlaneSection, ShardPiece, Written};
+pub use run::{Merge, Outcome, PlaneSection, Reused, ShardPiece, Written};
 pub use session::{Guess, Plan};
 pub use shards::ShardNumber;
 pub use sweepsim::Monitor;

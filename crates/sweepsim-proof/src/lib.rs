@@ -10,15 +10,19 @@ mod certificate;
 mod excess;
 mod motion;
 mod process;
+mod recall;
 mod search;
 mod solid;
 mod statement;
 mod tool;
 
 pub use certificate::{depth_claim, distance_claim, height_claim, motions, outline};
-pub use excess::{Left, PatchTrees, highest, margin, regions};
-pub use process::{Movers, Room, Touched, Work, touched};
-pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest};
+pub use excess::{Left, PatchTrees, highest, highest_from, margin, regions};
+pub use process::{Movers, Room, Touched, Work, touched, touched_from};
+pub use recall::{QuestionDigest, Recall};
+pub use search::{
+    Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, closest_from, deepest, deepest_from,
+};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};

@@ -45,6 +45,7 @@ impl VerifyOptions {
             request = request.limits(gouge, excess);
         }
         request
+            .cache(self.judging.cache.clone())
             .cells(row.cells.or(self.run.cells))
             .program(over(&row.options, self.run.program.given()))
     }

@@ -28,6 +28,10 @@ pub(crate) struct JudgeOptions {
     /// Also writes the certificate of what was proven to this file, for `check`.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["no_proof", "shard"])]
     pub certificate: Option<PathBuf>,
+    /// Keeps what is found in this folder: the next run judges a changed program from the change on only, with the same
+    /// results.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath, conflicts_with_all = ["first", "shard"])]
+    pub cache: Option<PathBuf>,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
     #[arg(long)]
     pub moves: bool,

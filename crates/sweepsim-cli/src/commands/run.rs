@@ -2,12 +2,14 @@
 
 use super::summary::{json, summary};
 use crate::arguments::{JobOptions, MergeOptions, RunOptions};
-use crate::session::{Failure, Outputs, Progress, print};
+use crate::session::{Failure, Lines, Outputs, Progress, print};
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim_formats::{Verdict, io_reason};
-use sweepsim_job::{JobError, Merge, Outcome, Plan, ShardNumber, Sink, Task, Written, output_folder, words};
+use sweepsim_job::{
+    JobError, Merge, Outcome, Plan, Reused, ShardNumber, Sink, Task, Written, output_folder, words,
+};
 
 /// How the process works, whatever it does.
 pub(super) struct Process {
@@ -116,11 +118,22 @@ impl Process {
             print(&json(report)?)
         } else if !self.quiet {
             let total = self.start.elapsed().as_secs_f64();
-            summary(done.outcome.plan(), report, &done.outputs, done.threads, total).print()
+            summary(done.outcome.plan(), report, &done.outputs, done.threads, total).print()?;
+            done.outcome.reused().map_or(Ok(()), |reused| reused_lines(&reused).print())
         } else {
             Ok(())
         }
     }
+}
+
+/// What was known from earlier runs.
+fn reused_lines(reused: &Reused) -> Lines {
+    let mut lines = Lines::default();
+    let [again, moves] = [reused.again, reused.moves].map(|count| words::count(count as u64));
+    let file = reused.file.display();
+    lines.line("cache", &format!("{again} of {moves} moves judged again ({file})"));
+    reused.notes.iter().for_each(|note| lines.line("", note));
+    lines
 }
 
 /// Computes a shard, and writes its piece.

@@ -25,9 +25,9 @@ pub(crate) type PackedInterval = Interval<Packed>;
 /// The intervals of [`LINES`] lines.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk {
-    first: [u32; LINES + 1],
-    pieces: Vec<PackedInterval>,
-    moves: SegmentTable,
+    pub(super) first: [u32; LINES + 1],
+    pub(super) pieces: Vec<PackedInterval>,
+    pub(super) moves: SegmentTable,
 }
 
 impl Default for Chunk {

@@ -6,6 +6,7 @@ mod line;
 mod nearest;
 mod packed;
 mod segments;
+mod state;
 mod tiles;
 mod update;
 

@@ -82,6 +82,16 @@ impl Octahedral {
         }
     }
 
+    pub(super) fn bytes(self) -> [u8; 4] {
+        let [[a, b], [c, d]] = self.0.map(i16::to_le_bytes);
+        [a, b, c, d]
+    }
+
+    pub(super) fn of_bytes([a, b, c, d]: [u8; 4]) -> Self {
+        let own = [[a, b], [c, d]].map(i16::from_le_bytes);
+        Self(own.map(|c| c.max(-i16::MAX)))
+    }
+
     /// Exactly the opposite direction.
     pub fn opposite(self) -> Self {
         let [x, y, z] = self.point();

@@ -14,7 +14,7 @@ pub(crate) struct CutSegment {
 /// How many entries, from the end of the table, are searched for a move before it is entered again.
 const LOOK: usize = 16;
 /// Bits of a time in a table of at most 256 moves.
-const TIME: u32 = 24;
+pub(super) const TIME: u32 = 24;
 /// The fewest bits of a time: no table that fits into memory leaves fewer.
 pub(super) const LEAST_TIME: u32 = 2;
 

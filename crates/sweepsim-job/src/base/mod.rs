@@ -1,5 +1,6 @@
 //! What everything else uses: errors, words for people, and where outputs go.
 
+pub(crate) mod cache;
 mod error;
 pub(crate) mod kind;
 mod memory;

@@ -11,6 +11,7 @@ pub use options::{DialectOptions, Judging, ProgramOptions, StockOption, SweepOpt
 pub use task::{Directions, Output, Task};
 
 use crate::base::JobError;
+use crate::base::cache::{Digest, RunCache};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use sweepsim::Options;
@@ -65,6 +66,9 @@ pub struct Request {
     pub(crate) view: ViewOptions,
     #[serde(default)]
     pub(crate) judging: Judging,
+    /// The folder of the cache: no result depends on it.
+    #[serde(skip)]
+    pub(crate) cache: Option<PathBuf>,
     #[serde(
         default,
         skip_deserializing,
@@ -93,6 +97,7 @@ impl Request {
             moments: None,
             view: ViewOptions::default(),
             judging: Judging::default(),
+            cache: None,
             given: Given::default(),
         }
     }
@@ -253,6 +258,15 @@ impl Request {
         Self { judging, ..self }
     }
 
+    /// A folder where runs of [`Task::Verify`] keep what they find, so that the next run of the same request judges a
+    /// changed program from the change on only. Results are the same to the byte; [`Outcome::reused`](crate::Outcome)
+    /// tells what was judged again. The folder is no part of the notation.
+    #[must_use]
+    pub fn cache(self, folder: impl Into<Option<PathBuf>>) -> Self {
+        let cache = folder.into();
+        Self { cache, ..self }
+    }
+
     /// The file of the job or the program, or its name.
     #[must_use]
     pub fn input(&self) -> &Input {
@@ -288,6 +302,24 @@ impl Request {
             .map(|file| file.clone())
             .chain(machine)
             .collect()
+    }
+
+    /// What earlier runs of this request have found, if that is to be used.
+    pub(crate) fn known(&self) -> Option<RunCache> {
+        let folder = self.cache.as_ref()?;
+        let name = self.input.name();
+        // Of a text, its name: it is what changes.
+        let request = Self {
+            input: Input::File(name.to_owned()),
+            given: Given::default(),
+            ..self.clone()
+        };
+        let notation = serde_json::to_string(&request).unwrap_or_default();
+        let key = Digest::of("request").bytes(notation.as_bytes()).key();
+        let number = key[..8].iter().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
+        let stem = name.file_stem().unwrap_or_default();
+        let name = crate::base::folder_name(&stem.to_string_lossy());
+        Some(RunCache::open(folder, &format!("{}-{number:016x}", name.display())))
     }
 
     fn files_mut(&mut self) -> Vec<&mut PathBuf> {
@@ -356,6 +388,10 @@ impl Request {
                 let why = "expected a number of millimetres, 0 or greater";
                 return Err(JobError::request(field, why));
             }
+        }
+        if self.cache.is_some() && (self.task != Task::Verify || self.judging.first) {
+            let why = "is for `verify` of whole programs: leave out `first`, or the cache";
+            return Err(JobError::request("cache", why));
         }
         if !(8..=4096).contains(&self.sweeping.tile) {
             return Err(JobError::request("tile", "expected a whole number from 8 to 4096"));

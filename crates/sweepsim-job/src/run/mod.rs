@@ -10,6 +10,6 @@ mod section;
 mod shard;
 
 pub use merge::Merge;
-pub use outcome::{Outcome, Written};
+pub use outcome::{Outcome, Reused, Written};
 pub use section::PlaneSection;
 pub use shard::ShardPiece;

@@ -9,7 +9,7 @@ use crate::page::{self, PageSource};
 use crate::request::{Output, Task};
 use crate::session::{self, Plan, Session};
 use crate::verify;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use sweepsim::{Method, Monitor};
 use sweepsim_dexel::{Dexels, Mesh};
 use sweepsim_formats::{MoveSummary, Report, ReportedFinding, Verdict, write_moves_csv};
@@ -22,6 +22,20 @@ pub struct Outcome {
     plan: Plan,
     report: Report,
     done: Computed,
+}
+
+/// What of a run was known from earlier ones.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Reused {
+    /// The file that it is kept in.
+    pub file: PathBuf,
+    /// Moves that were judged again: the most along one direction of dexels, or beside fixtures.
+    pub again: usize,
+    /// All moves.
+    pub moves: usize,
+    /// What is wrong with the cache, if anything: it was then done without.
+    pub notes: Vec<String>,
 }
 
 /// What was written.
@@ -84,6 +98,9 @@ impl Plan {
             None => compute(session, &mut report)?,
         };
         describe(session, &done, &mut report);
+        if let Some(cache) = session.cache() {
+            cache.save();
+        }
         let plan = self;
         Ok(Outcome { plan, report, done })
     }
@@ -106,6 +123,19 @@ impl Outcome {
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.report.verdict
+    }
+
+    /// What of the run was known from earlier ones, if a [cache](crate::Request::cache) was asked for.
+    #[must_use]
+    pub fn reused(&self) -> Option<Reused> {
+        let cache = self.plan.cache.as_ref()?;
+        let [again, moves] = cache.moves().unwrap_or_default();
+        Some(Reused {
+            file: cache.file().to_owned(),
+            again,
+            moves,
+            notes: cache.notes(),
+        })
     }
 
     /// What is wrong with the program, in its order, each with file, line and text.
@@ -222,6 +252,9 @@ impl Outcome {
             sink.write("report.html", &mut |file| file.write_all(html.as_bytes()))?;
             let text = json(&report)?;
             sink.write("report.json", &mut |file| file.write_all(text.as_bytes()))?;
+        }
+        if let Some(cache) = session.cache() {
+            cache.save();
         }
         let certified = self.is_certified() && uncertified == 0;
         Ok(Written { report, certified })

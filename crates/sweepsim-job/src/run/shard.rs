@@ -119,6 +119,10 @@ impl Plan {
 
 /// Only stock that is divided into tiles can be shared out.
 pub(super) fn check(request: &Request) -> Result<(), JobError> {
+    if request.cache.is_some() {
+        let why = "each shard judges the whole program on its own tiles: leave out one of them";
+        return Err(JobError::request("cache with --shard", why));
+    }
     match request.task {
         Task::Sweep | Task::Section => Err(JobError::request(
             "shard",

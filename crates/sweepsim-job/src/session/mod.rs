@@ -12,6 +12,7 @@ pub(crate) use three_axes::{
 };
 
 use crate::base::JobError;
+use crate::base::cache::{Digest, Key, RunCache};
 use crate::request::Request;
 use std::fmt::Display;
 use std::path::Path;
@@ -47,6 +48,29 @@ impl<'a> Session<'a> {
     /// The folder that the names of programs refer to.
     pub fn folder(&self) -> &'a Path {
         self.file().parent().unwrap_or(Path::new(""))
+    }
+
+    /// What earlier runs have found.
+    pub fn cache(&self) -> Option<&'a RunCache> {
+        self.plan.cache.as_ref()
+    }
+
+    /// Digests of the stock, and of the target with its limits, for those who ask the cache.
+    pub fn digests(&self) -> (Key, Key) {
+        let job = self.job;
+        let stock = || Digest::of("stock").stock(&job.stock).key();
+        let target = || {
+            let own = Digest::of("target").value(&job.limits).floats(&[job.tolerance]);
+            match &job.target {
+                Some(target) => own.number(1).triangles(&target.mesh).value(&target.colours),
+                None => own.number(0),
+            }
+            .key()
+        };
+        match self.cache() {
+            Some(cache) => (*cache.stock.get_or_init(stock), *cache.target.get_or_init(target)),
+            None => (stock(), target()),
+        }
     }
 
     /// Names the phase that begins.

@@ -1,6 +1,7 @@
 //! What will be done: the request with everything read, found or guessed.
 
 use super::check;
+use crate::base::cache::RunCache;
 use crate::base::kind::Kind;
 use crate::base::{JobError, check_room, least_memory};
 use crate::request::{Directions, Input, Output, ProgramOptions, Request, Task};
@@ -26,6 +27,8 @@ pub struct Plan {
     pub(crate) reading: Duration,
     /// What shards have computed of it.
     pub(crate) pieces: Option<Pieces>,
+    /// What earlier runs have found.
+    pub(crate) cache: Option<RunCache>,
 }
 
 /// The pieces of all shards of a run.
@@ -56,6 +59,7 @@ impl Request {
         if let Some([gouge, excess]) = self.limits {
             job.limits = Some(Limits::new(gouge, excess));
         }
+        let cache = self.known();
         let plan = Plan {
             request: self,
             job,
@@ -64,6 +68,7 @@ impl Request {
             began,
             reading: began.elapsed(),
             pieces: None,
+            cache,
         };
         if plan.request.task != Task::Section {
             plan.check_directions()?;

@@ -151,7 +151,7 @@ impl Before {
         let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
         let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
         session.phase("target");
-        let target = phase(report, "target", || targets::of_job(job, &job.grid));
+        let target = phase(report, "target", || targets::of_job(session, &job.grid));
         let target = target.map_err(|error| session.failure(format!("target: {error}")))?;
         Ok(Self { stock, target })
     }
@@ -237,24 +237,22 @@ fn deviating(
     let known = |(set, look): (&TilingSet, _)| {
         let stock = set.whole_stock(&job.stock);
         let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
-        let target = targets::of_job(job, &set.grid);
+        let target = targets::on(session, target, &set.grid);
         let target = target.map_err(|error| session.failure(format!("target: {error}")))?;
         Ok((stock, target, look))
     };
-    let aside: Vec<(Dexels, Option<Target>, &Gathered)> = aside.map(known).collect::<Result<_, JobError>>()?;
+    let aside: Vec<(Dexels, Target, &Gathered)> = aside.map(known).collect::<Result<_, JobError>>()?;
     let mut all = vec![Look {
         tiles: along_z,
         stock,
         remaining: &looks[0].dexels,
         target,
     }];
-    all.extend(aside.iter().filter_map(|(stock, target, look)| {
-        Some(Look {
-            tiles: &look.deviations,
-            stock,
-            remaining: &look.dexels,
-            target: target.as_ref()?,
-        })
+    all.extend(aside.iter().map(|(stock, target, look)| Look {
+        tiles: &look.deviations,
+        stock,
+        remaining: &look.dexels,
+        target,
     }));
     Ok(deviations_along(&all))
 }

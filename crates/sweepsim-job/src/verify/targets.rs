@@ -1,17 +1,69 @@
 //! Targets with their limits, and deviations from them for reports.
 
-use sweepsim::verify::{Deviation, DeviationKind, Deviations, Region, Target, TargetError, TargetRegion};
-use sweepsim_dexel::{Grid, TriangleSoup};
-use sweepsim_formats::{DeviationSummary, Job, Limits, ReportedRegion};
+use crate::base::cache::Digest;
+use crate::session::Session;
+use sweepsim::verify::{Deviation, DeviationKind, Deviations, Region, Target, TargetError, TargetRegion, TargetShape};
+use sweepsim_dexel::{Dexels, Grid, TriangleSoup};
+use sweepsim_formats::{DeviationSummary, Limits, ReportedRegion};
 
 /// The limits of a target that comes without any, in millimetres.
 pub(crate) const LIMIT: f64 = 0.1;
 
 /// The target of a job, for a stock on this grid.
-pub(super) fn of_job(job: &Job, grid: &Grid) -> Result<Option<Target>, TargetError> {
+pub(super) fn of_job(session: Session, grid: &Grid) -> Result<Option<Target>, TargetError> {
+    let job = session.job;
     let Some(target) = &job.target else { return Ok(None) };
     let parts = job.limits.as_ref().map(|limits| target.by_region(limits));
-    with_limits(&target.mesh, parts, job.limits.as_ref(), grid, job.tolerance).map(Some)
+    let (rest, regions) = regions_of(&target.mesh, parts, job.limits.as_ref(), job.tolerance);
+    let shape = TargetShape::new(&target.mesh, rest, &regions)?;
+    on_grid(session, grid, |lines| match lines {
+        Some(lines) => shape.known(lines),
+        None => shape.on(grid),
+    })
+    .map(Some)
+}
+
+/// A target on another grid.
+pub(super) fn on(session: Session, target: &Target, grid: &Grid) -> Result<Target, TargetError> {
+    on_grid(session, grid, |lines| match lines {
+        Some(lines) => target.shape().known(lines),
+        None => target.on(grid),
+    })
+}
+
+/// What of a target is on the lines of a grid, if it was made before; else it is made, and kept.
+fn on_grid(
+    session: Session,
+    grid: &Grid,
+    make: impl Fn(Option<[Dexels; 3]>) -> Result<Target, TargetError>,
+) -> Result<Target, TargetError> {
+    let Some(cache) = session.cache() else { return make(None) };
+    let key = Digest::of("target").bytes(&session.digests().1).value(grid).key();
+    if let Some(known) = cache.get(&key) {
+        if let Some(lines) = read_lines(known, grid) {
+            return make(Some(lines));
+        }
+        cache.spoilt();
+    }
+    let target = make(None)?;
+    let mut lines = Vec::new();
+    for own in [target.solid(), target.core(), target.allowed()] {
+        let state = own.state();
+        lines.extend((state.len() as u64).to_le_bytes());
+        lines.extend(state);
+    }
+    cache.put(key, lines);
+    Ok(target)
+}
+
+fn read_lines(mut known: &[u8], grid: &Grid) -> Option<[Dexels; 3]> {
+    let mut next = || {
+        let (length, rest) = known.split_first_chunk::<8>()?;
+        let (state, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+        known = rest;
+        Dexels::from_state(*grid, state)
+    };
+    Some([next()?, next()?, next()?])
 }
 
 /// A target by region: `parts` has what of its surface is in no region, then each region.
@@ -22,10 +74,21 @@ pub(crate) fn with_limits(
     grid: &Grid,
     tolerance: f64,
 ) -> Result<Target, TargetError> {
+    let (rest, regions) = regions_of(mesh, parts, limits, tolerance);
+    Target::with_regions(mesh, grid, rest, &regions)
+}
+
+/// What of a target's surface is in no region, and the regions.
+fn regions_of(
+    mesh: &TriangleSoup,
+    parts: Option<Vec<TriangleSoup>>,
+    limits: Option<&Limits>,
+    tolerance: f64,
+) -> (TargetRegion, Vec<TargetRegion>) {
     // Below the tolerance of the dexels there is nothing to judge.
     let least = |limits: [f64; 2]| limits.map(|limit| limit.max(2.0 * tolerance));
     let (Some(limits), Some(parts)) = (limits, parts) else {
-        return Target::new(mesh, grid, LIMIT.max(2.0 * tolerance), LIMIT.max(2.0 * tolerance));
+        return (TargetRegion::new(mesh.clone(), least([LIMIT; 2])), Vec::new());
     };
     let own = std::iter::once([limits.gouge, limits.excess]);
     let all = own.chain(limits.regions.iter().map(|region| [region.gouge, region.excess]));
@@ -36,7 +99,7 @@ pub(crate) fn with_limits(
     let rest = parts
         .next()
         .unwrap_or_else(|| TargetRegion::new(mesh.clone(), least([limits.gouge, limits.excess])));
-    Target::with_regions(mesh, grid, rest, &parts.collect::<Vec<_>>())
+    (rest, parts.collect())
 }
 
 /// The name of the region of the limits that a deviation exceeds.

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-job`, in one binary: it links once.
 
+mod cache;
 mod certificates;
 mod ci;
 mod given;

@@ -8,6 +8,7 @@
 //! the stock, or in one convex solid that was removed: an exact part of a cutter at some time, or all along a straight
 //! stretch; or if they are nearer to one triangle than `d`, so that the patch is not in `Σ`. Else it is divided.
 
+mod known;
 mod record;
 mod removed;
 mod search;
@@ -16,6 +17,6 @@ mod surface;
 
 pub use record::PatchTrees;
 pub(crate) use removed::{Course, from_axis, level_at, lowest, narrowed, quick, stays_away};
-pub use search::{Left, highest, margin};
+pub use search::{Left, highest, highest_from, margin};
 pub(crate) use stock::Before;
 pub use stock::regions;

@@ -37,6 +37,14 @@ pub(super) enum Step {
 pub(super) struct Record(Vec<u8>);
 
 impl Record {
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    pub fn of_bytes(bytes: Vec<u8>) -> Self {
+        Self(bytes)
+    }
+
     pub fn clear(&mut self) {
         self.0 = Vec::new();
     }

@@ -2,10 +2,12 @@
 
 mod look;
 
+use super::known::{Blocks, nothing};
 use super::record::{PatchTrees, Record, Step, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
 use super::surface::Patch;
+use crate::recall::{Recall, Writing};
 use crate::search::{Cutter, Limits};
 use crate::solid::Target;
 use look::Search;
@@ -81,6 +83,21 @@ pub fn highest(
     recorded: bool,
     monitor: &dyn Monitor,
 ) -> Result<Option<Left>, MeshError> {
+    highest_from(&(), (target, stock), cutters, limits, recorded, monitor)
+}
+
+/// The same, where some answers are known: the result is the same.
+///
+/// # Errors
+/// Those of [`highest`].
+pub fn highest_from(
+    recall: &dyn Recall,
+    (target, stock): (&Target, &Stock),
+    cutters: &[Cutter],
+    limits: &Limits,
+    recorded: bool,
+    monitor: &dyn Monitor,
+) -> Result<Option<Left>, MeshError> {
     let mut size = target.size;
     let mut motions = Vec::with_capacity(cutters.len());
     for cutter in cutters {
@@ -118,7 +135,14 @@ pub fn highest(
         // Without some of the triangles, the patches are not those of a checker; and of a mesh, it knows no regions.
         recorded: recorded && target.is_whole && regions(stock, 0.0).is_some(),
     };
-    Ok(scene.search(limits, monitor))
+    let blocks = recall.keeps().then(|| {
+        let mut question = Writing::default();
+        question.bytes(b"highest");
+        question.floats(&[margin]);
+        question.number(usize::from(scene.recorded));
+        Blocks::new(recall, &scene.removed, question)
+    });
+    Ok(scene.search(limits, blocks.as_ref(), monitor))
 }
 
 struct Scene<'a> {
@@ -135,14 +159,14 @@ struct Scene<'a> {
 
 /// What was found of a distance.
 #[derive(Default)]
-struct Found {
-    highest: Option<(Vector3<f64>, f64)>,
+pub(super) struct Found {
+    pub highest: Option<(Vector3<f64>, f64)>,
     /// Whether some of the surface is left.
-    is_left: bool,
-    open: Vec<[[f64; 3]; 2]>,
-    open_count: usize,
-    patches: usize,
-    record: Record,
+    pub is_left: bool,
+    pub open: Vec<[[f64; 3]; 2]>,
+    pub open_count: usize,
+    pub patches: usize,
+    pub record: Record,
 }
 
 impl Found {
@@ -169,7 +193,7 @@ impl Found {
 }
 
 impl Scene<'_> {
-    fn search(&self, limits: &Limits, monitor: &dyn Monitor) -> Option<Left> {
+    fn search(&self, limits: &Limits, blocks: Option<&Blocks>, monitor: &dyn Monitor) -> Option<Left> {
         let mut left = Left {
             highest: None,
             bound: f64::INFINITY,
@@ -182,7 +206,7 @@ impl Scene<'_> {
         for _ in 0..ROUNDS {
             let spent = limits.pairs.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
-            let all = self.at_distance(distance, (known, limits.width), spent, monitor)?;
+            let all = self.at_distance(distance, (known, limits.width), spent, (blocks, monitor))?;
             let is_done = all.iter().all(|found| !found.is_left && found.open_count == 0);
             if is_done && self.recorded {
                 let records: Vec<&Record> = all.iter().map(|found| &found.record).collect();
@@ -228,7 +252,7 @@ impl Scene<'_> {
         distance: f64,
         (mut known, width): (f64, f64),
         patches: usize,
-        monitor: &dyn Monitor,
+        (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
     ) -> Option<Vec<Found>> {
         let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
@@ -245,7 +269,7 @@ impl Scene<'_> {
             // What is found at some patches need not be found again at the others.
             let (some, others): (Vec<usize>, Vec<usize>) = open.iter().partition(|number| **number % SAMPLED == 0);
             for numbers in [some, others] {
-                let again = self.look_at(&numbers, (distance, known, FINER * width), each, monitor)?;
+                let again = self.look_at(&numbers, (distance, known, FINER * width), each, (blocks, monitor))?;
                 for (number, mut again) in numbers.into_iter().zip(again) {
                     left = left.saturating_sub(again.patches);
                     known = known.max(again.height());
@@ -267,11 +291,11 @@ impl Scene<'_> {
         numbers: &[usize],
         (distance, known, finer): (f64, f64, f64),
         each: usize,
-        monitor: &dyn Monitor,
+        (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
     ) -> Option<Vec<Found>> {
         let (done, total) = (AtomicUsize::new(0), numbers.len());
         let look = |numbers: &[usize]| {
-            let mut recent = None;
+            let (mut recent, mut around) = (None, nothing());
             let mut all = Vec::with_capacity(numbers.len());
             for number in numbers {
                 if monitor.cancelled() {
@@ -284,15 +308,28 @@ impl Scene<'_> {
                     finer,
                     found: Found::default(),
                     recent,
+                    around,
                 };
                 search.look(self.patches[*number].clone(), each);
-                recent = search.recent;
+                (recent, around) = (search.recent, search.around);
                 all.push(search.found);
             }
-            monitor.advance(numbers.len() + done.fetch_add(numbers.len(), Ordering::Relaxed), total);
-            Some(all)
+            Some((all, around))
         };
-        let all: Option<Vec<Vec<Found>>> = numbers.par_chunks(TOGETHER).map(look).collect();
+        let some = |numbers: &[usize]| {
+            let asked = |question: &mut Writing| {
+                question.floats(&[distance, known, finer]);
+                question.number(each);
+                numbers.iter().for_each(|number| question.number(*number));
+            };
+            let found = match blocks {
+                Some(blocks) => blocks.found(asked, numbers.len(), || look(numbers))?,
+                None => look(numbers)?.0,
+            };
+            monitor.advance(numbers.len() + done.fetch_add(numbers.len(), Ordering::Relaxed), total);
+            Some(found)
+        };
+        let all: Option<Vec<Vec<Found>>> = numbers.par_chunks(TOGETHER).map(some).collect();
         Some(all?.into_iter().flatten().collect())
     }
 

@@ -41,6 +41,21 @@ impl Boxes {
         self.each(before, around, |stretch, _| visit(stretch))
     }
 
+    /// Boxes around what is swept in so many stretches each.
+    pub fn hulls(&self, together: usize) -> Vec<[f32; 6]> {
+        let none = [f32::INFINITY, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];
+        let mut all = vec![none; self.stretches.div_ceil(together)];
+        let everywhere = Vector3::repeat(f64::INFINITY);
+        self.each(self.stretches, (&-everywhere, &everywhere), |stretch, own| {
+            let hull = &mut all[stretch / together];
+            for k in 0..3 {
+                (hull[k], hull[k + 3]) = (hull[k].min(own[k]), hull[k + 3].max(own[k + 3]));
+            }
+            true
+        });
+        all
+    }
+
     /// The numbers of stretches whose boxes meet a box, at most so many: those in the middle of whose boxes it is.
     pub fn most_central(&self, low: &Vector3<f64>, high: &Vector3<f64>, most: usize) -> Vec<usize> {
         let middle = (low + high).map(|c| c as f32);

@@ -5,6 +5,6 @@ mod run;
 mod stretch;
 
 pub(crate) use boxes::Boxes;
-pub(crate) use run::Run;
+pub(crate) use run::{Bounds, Run};
 pub use stretch::Placement;
 pub(crate) use stretch::Stretch;

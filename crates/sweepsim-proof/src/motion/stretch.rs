@@ -1,5 +1,6 @@
 //! A stretch of a motion with bounds on how fast its tip and axis move and bend.
 
+use crate::recall::Writing;
 use nalgebra::{Vector3, Vector4};
 use smallvec::SmallVec;
 use sweepsim_motion::Segment;
@@ -76,6 +77,22 @@ impl Stretch {
             high,
             tip: tip_rates,
             axis: axis_rates,
+        }
+    }
+
+    /// All that it is, for a digest.
+    pub fn write(&self, to: &mut Writing) {
+        to.number(self.number);
+        to.floats(&self.times);
+        for end in &self.ends {
+            to.floats(end.tip.as_slice());
+            to.floats(end.axis.as_slice());
+        }
+        to.floats(self.low.as_slice());
+        to.floats(self.high.as_slice());
+        to.floats(&[self.tip.speed, self.tip.bend, self.axis.speed, self.axis.bend]);
+        if let Some(bent) = &self.bent {
+            to.bytes(format!("{:?}", bent.segment).as_bytes());
         }
     }
 

@@ -8,6 +8,7 @@
 //! Rapids remove nothing here, so that what they would remove is found.
 
 mod history;
+mod known;
 mod ring;
 mod samples;
 mod scene;
@@ -16,4 +17,4 @@ mod visit;
 mod zone;
 
 pub use scene::{Movers, Room, Work};
-pub use search::{Touched, touched};
+pub use search::{Touched, touched, touched_from};

@@ -1,11 +1,13 @@
 //! The search for what touches material.
 
 use super::history::History;
+use super::known::prefixes;
 use super::samples::Turned;
 use super::scene::{Found, Movers, Room, Scene, Work};
 use super::visit::Search;
 use crate::excess::{Before, Course};
 use crate::motion::{Run, Stretch};
+use crate::recall::{Answer, QuestionDigest, Recall, Writing};
 use crate::search::Cutter;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
@@ -31,7 +33,7 @@ pub struct Touched {
 }
 
 /// So many moves are looked at together.
-const TOGETHER: usize = 64;
+pub(super) const TOGETHER: usize = 64;
 /// At first, everything is looked at in so few zones.
 const FIRST_LOOK: usize = 512;
 /// Coordinates of this size are exact to 1.
@@ -43,6 +45,21 @@ const ROUNDING: f64 = 1e-12;
 /// # Errors
 /// The stock has too many vertices.
 pub fn touched(
+    stock: &Stock,
+    work: &[Work],
+    movers: Movers,
+    room: &Room,
+    monitor: &dyn Monitor,
+) -> Result<Option<Touched>, MeshError> {
+    touched_from(&(), stock, work, movers, room, monitor)
+}
+
+/// The same, where some answers are known: the result is the same.
+///
+/// # Errors
+/// Those of [`touched`].
+pub fn touched_from(
+    recall: &dyn Recall,
     stock: &Stock,
     work: &[Work],
     movers: Movers,
@@ -80,7 +97,7 @@ pub fn touched(
         margin: room.distance + 2.0 * room.deviation + rounding,
         bounds: [low, high],
     };
-    Ok(scene.search(monitor))
+    Ok(scene.search(recall, monitor))
 }
 
 impl Work<'_> {
@@ -126,7 +143,11 @@ fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
 }
 
 impl Scene<'_> {
-    fn search(&self, monitor: &dyn Monitor) -> Option<Touched> {
+    fn search(&self, recall: &dyn Recall, monitor: &dyn Monitor) -> Option<Touched> {
+        let prefixes = match recall.keeps() {
+            true => prefixes(recall, self.work, self.room),
+            false => Vec::new(),
+        };
         let all: Vec<(usize, Range<usize>)> = self.work.iter().enumerate().flat_map(|own| self.ranges(own)).collect();
         let mut found: Vec<Found> = all.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..all.len()).collect();
@@ -141,7 +162,11 @@ impl Scene<'_> {
                     return None;
                 }
                 let (path, moves) = &all[*number];
-                let found = self.look(*path, moves.clone(), most);
+                let look = || self.look(*path, moves.clone(), most);
+                let found = match prefixes.get(*path) {
+                    Some(own) => self.known(recall, &own[moves.start / TOGETHER], most, look),
+                    None => look(),
+                };
                 monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
                 Some(found)
             };
@@ -177,6 +202,28 @@ impl Scene<'_> {
             .map(|from| from..moves.min(from + TOGETHER));
         let some = ranges.filter(|range| self.movers == Movers::Bodies || range.clone().any(work.is_rapid));
         some.map(|range| (path, range)).collect()
+    }
+
+    /// What is found in a range of moves, if it was looked for before: it follows from all up to its end.
+    fn known(
+        &self,
+        recall: &dyn Recall,
+        prefix: &QuestionDigest,
+        most: usize,
+        look: impl FnOnce() -> Found,
+    ) -> Found {
+        let mut question = Writing::default();
+        question.bytes(format!("touched {:?}", self.movers).as_bytes());
+        question.0.extend(prefix);
+        question.number(most);
+        question.floats(&[self.margin, self.room.distance, self.room.deviation]);
+        let key = recall.digest(&question.0);
+        let known = recall.recall(&key).and_then(|bytes| Found::read_all(&bytes, 1)?.pop());
+        known.unwrap_or_else(|| {
+            let found = look();
+            recall.keep(&key, Found::write_all(std::slice::from_ref(&found)));
+            found
+        })
     }
 
     fn look(&self, path: usize, moves: Range<usize>, most: usize) -> Found {

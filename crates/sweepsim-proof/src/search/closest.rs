@@ -1,9 +1,11 @@
 //! How near bodies come to a solid, at every time.
 
 use super::gouge::{Cutter, Limits, Tree, parts, trees};
+use super::known::Asking;
 use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::Run;
+use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use std::ops::Range;
@@ -47,6 +49,19 @@ pub fn closest(
     recorded: bool,
     monitor: &dyn Monitor,
 ) -> Option<Closest> {
+    closest_from(&(), target, bodies, limits, recorded, monitor)
+}
+
+/// The same, where some answers are known: the result is the same.
+#[must_use]
+pub fn closest_from(
+    recall: &dyn Recall,
+    target: &Target,
+    bodies: &[Cutter],
+    limits: &Limits,
+    recorded: bool,
+    monitor: &dyn Monitor,
+) -> Option<Closest> {
     let parts = parts(bodies);
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
@@ -72,7 +87,25 @@ pub fn closest(
             monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Some(found)
         };
-        let again: Vec<Found> = target.each(&open, again)?;
+        let mut question = Writing::default();
+        question.bytes(b"closest");
+        question.floats(&[limits.depth, limits.width, known]);
+        question.number(pairs);
+        question.number(usize::from(recorded));
+        let asking = Asking {
+            recall,
+            cutters: bodies,
+            deviation: limits.deviation,
+            question,
+        };
+        let part = |number: &usize| &parts[*number];
+        let recalled = |numbers: &[usize]| recall.keeps().then(|| asking.known(numbers.iter().map(part)))?;
+        let keep = |numbers: &[usize], found: &[Found]| {
+            if recall.keeps() {
+                asking.keep(numbers.iter().map(part), found);
+            }
+        };
+        let again: Vec<Found> = target.each(&open, (recalled, keep), again)?;
         for (number, again) in open.iter().zip(again) {
             let before = std::mem::replace(&mut found[*number], again);
             found[*number].take(before);

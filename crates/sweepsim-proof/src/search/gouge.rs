@@ -2,7 +2,9 @@
 
 use super::deepest::{Search, Wanted, enough};
 use super::found::Found;
+use super::known::{Asking, Part};
 use crate::motion::{Run, Stretch};
+use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
@@ -166,6 +168,19 @@ pub fn deepest(
     recorded: bool,
     monitor: &dyn Monitor,
 ) -> Option<Enclosed> {
+    deepest_from(&(), target, cutters, limits, recorded, monitor)
+}
+
+/// The same, where some answers are known: the result is the same.
+#[must_use]
+pub fn deepest_from(
+    recall: &dyn Recall,
+    target: &Target,
+    cutters: &[Cutter],
+    limits: &Limits,
+    recorded: bool,
+    monitor: &dyn Monitor,
+) -> Option<Enclosed> {
     let parts = parts(cutters);
     let mut found: Vec<Found> = parts.iter().map(|_| Found::default()).collect();
     let mut open: Vec<usize> = (0..parts.len()).collect();
@@ -197,7 +212,7 @@ pub fn deepest(
         let step = if look == 0 { open.len().div_ceil(SAMPLED) } else { 1 };
         let some: Vec<usize> = open.iter().copied().step_by(step.max(1)).collect();
         let own: Vec<_> = some.iter().map(|number| parts[*number].clone()).collect();
-        let again = look_at(target, cutters, (&own, limits), asked, monitor)?;
+        let again = look_at((target, recall), cutters, (&own, limits), asked, monitor)?;
         for (number, again) in some.iter().zip(again) {
             found[*number] = again.after(std::mem::take(&mut found[*number]));
         }
@@ -250,7 +265,7 @@ struct Asked {
 
 /// A search in each of some parts.
 fn look_at(
-    target: &Target,
+    (target, recall): (&Target, &dyn Recall),
     cutters: &[Cutter],
     (parts, limits): (&[(usize, Range<usize>)], &Limits),
     asked: Asked,
@@ -265,7 +280,24 @@ fn look_at(
         monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Some(found)
     };
-    target.each(parts, look)
+    let mut question = Writing::default();
+    question.bytes(b"deepest");
+    question.floats(&[limits.depth, asked.width, asked.known]);
+    question.number(asked.pairs);
+    question.number(usize::from(asked.recorded));
+    let asking = Asking {
+        recall,
+        cutters,
+        deviation: limits.deviation,
+        question,
+    };
+    let known = |parts: &[Part]| recall.keeps().then(|| asking.known(parts.iter()))?;
+    let keep = |parts: &[Part], found: &[Found]| {
+        if recall.keeps() {
+            asking.keep(parts.iter(), found);
+        }
+    };
+    target.each(parts, (known, keep), look)
 }
 
 impl Enclosed {

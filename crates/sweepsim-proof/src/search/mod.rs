@@ -6,12 +6,13 @@ mod closest;
 mod deepest;
 mod found;
 mod gouge;
+mod known;
 mod near;
 mod nearest;
 mod pair;
 mod reach;
 mod trace;
 
-pub use closest::{Closest, closest};
+pub use closest::{Closest, closest, closest_from};
 pub(crate) use gouge::TOGETHER;
-pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest};
+pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_from};

@@ -14,7 +14,7 @@ pub use faults::Fault;
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{PoisonError, RwLock};
 use sweepsim_dexel::{DistanceTo, MeshError, TriangleSoup};
 
@@ -29,6 +29,8 @@ pub struct Target {
     pub(crate) distance: DistanceTo,
     /// How many more cells there may be.
     pub(crate) cells_left: AtomicUsize,
+    /// Whether some part of a work had hardly enough of them.
+    crowded: AtomicBool,
     /// A bound of all coordinates.
     pub(crate) size: f64,
     /// Whether all triangles have an area.
@@ -80,6 +82,7 @@ impl Target {
             triangles,
             distance,
             cells_left: AtomicUsize::new(MOST_CELLS),
+            crowded: AtomicBool::new(false),
             size,
         })
     }
@@ -104,19 +107,32 @@ impl Target {
     }
 
     /// Does a work in parts, some at a time, with the cells in between, and forgets these when they are many. What
-    /// remains known does not depend on threads. `None` if one of the parts is none.
+    /// remains known does not depend on threads. `None` if one of the parts is none. What is `known` of some parts is
+    /// not looked for, and `keep` gets what is found of others.
     pub(crate) fn each<T: Sync, U: Send>(
         &self,
         parts: &[T],
+        (known, keep): (impl Fn(&[T]) -> Option<Vec<U>>, impl Fn(&[T], &[U])),
         work: impl Fn(&Cell, &T) -> Option<U> + Sync,
     ) -> Option<Vec<U>> {
         let mut all = Vec::with_capacity(parts.len());
         for some in parts.chunks(TOGETHER) {
+            if let Some(own) = known(some) {
+                all.extend(own);
+                continue;
+            }
             let own: Option<Vec<U>> = {
                 let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
                 some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
             };
-            all.extend(own?);
+            let own = own?;
+            // Whether there were enough cells must not depend on what was known before.
+            if MOST_CELLS - self.cells_left.load(Ordering::Relaxed) < MOST_CELLS - 2 * KEPT {
+                keep(some, &own);
+            } else {
+                self.crowded.store(true, Ordering::Relaxed);
+            }
+            all.extend(own);
             if MOST_CELLS - self.cells_left.load(Ordering::Relaxed) > KEPT {
                 let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
                 self.cells_left
@@ -124,6 +140,13 @@ impl Target {
             }
         }
         Some(all)
+    }
+
+    /// Whether a work on it nearly ran out of room. What is found then may depend on what was
+    /// [known before](crate::Recall).
+    #[must_use]
+    pub fn is_crowded(&self) -> bool {
+        self.crowded.load(Ordering::Relaxed)
     }
 
     /// How deep a point lies in the solid; negative outside.

@@ -4,6 +4,7 @@ mod apart;
 mod certificates;
 mod forged;
 mod process;
+mod recall;
 mod scenes;
 mod standing;
 mod trees;

@@ -31,8 +31,10 @@ mod target;
 pub use deviation::{
     AreaShare, Deviation, DeviationKind, Deviations, Look, Region, TileDeviation, deviations, deviations_along,
 };
-pub use driver::{TileVerification, verify, verify_tiles};
+pub use driver::{
+    Checkpoints, RunOfMoves, TileNotes, TileState, TileVerification, runs_of, verify, verify_tiles, verify_tiles_from,
+};
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use record::{Judgement, TileRecord};
 pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
-pub use target::{Target, TargetError, TargetRegion};
+pub use target::{Target, TargetError, TargetRegion, TargetShape};

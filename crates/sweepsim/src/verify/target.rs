@@ -13,10 +13,13 @@ pub struct Target {
     core: Dexels,
     /// The part, and what is nearer to it than the limit for excess.
     allowed: Dexels,
-    shape: Arc<Shape>,
+    shape: TargetShape,
 }
 
-/// What does not depend on the grid.
+/// What of a target does not depend on the grid.
+#[derive(Clone, Debug)]
+pub struct TargetShape(Arc<Shape>);
+
 #[derive(Debug)]
 struct Shape {
     mesh: TriangleSoup,
@@ -68,6 +71,67 @@ pub enum TargetError {
     Grid(#[from] GridMismatch),
 }
 
+impl TargetShape {
+    /// That of [`Target::with_regions`].
+    ///
+    /// # Errors
+    /// Those of it that do not depend on the grid.
+    pub fn new(mesh: &TriangleSoup, rest: TargetRegion, regions: &[TargetRegion]) -> Result<Self, TargetError> {
+        let all = || std::iter::once(&rest).chain(regions);
+        for (name, value) in all().flat_map(|part| [("gouges", part.limits[0]), ("excess", part.limits[1])]) {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(TargetError::Limit { name, value });
+            }
+        }
+        let parts: Vec<TargetRegion> = all().cloned().collect();
+        let distances = parts.iter().filter(|_| !regions.is_empty());
+        let distances = distances.map(|part| DistanceTo::new(&part.surface));
+        let shape = Shape {
+            distance: DistanceTo::new(mesh)?,
+            distances: distances.collect::<Result<_, MeshError>>()?,
+            mesh: mesh.clone(),
+            parts,
+        };
+        Ok(Self(Arc::new(shape)))
+    }
+
+    /// The target on the lines of a grid.
+    ///
+    /// # Errors
+    /// Those of [`Target::new`].
+    pub fn on(&self, grid: &Grid) -> Result<Target, TargetError> {
+        let shape = &self.0;
+        let solid = Stock::Mesh(shape.mesh.clone()).dexels(grid)?;
+        let (mut core, mut allowed) = (solid.clone(), solid.clone());
+        for part in &shape.parts {
+            let [gouge, excess] = part.limits;
+            if gouge > 0.0 {
+                core.combine(Operation::Difference, &part.surface.thickened(grid, gouge))?;
+            }
+            if excess > 0.0 {
+                allowed.combine(Operation::Union, &part.surface.thickened(grid, excess))?;
+            }
+        }
+        self.known([solid, core, allowed])
+    }
+
+    /// The target on the lines of a grid if what is there is known: [`Target::solid`], [`Target::core`] and [`Target::allowed`] as they were made before. Nothing is computed anew.
+    ///
+    /// # Errors
+    /// [`TargetError::Grid`] if the three have different grids.
+    pub fn known(&self, [solid, core, allowed]: [Dexels; 3]) -> Result<Target, TargetError> {
+        if solid.grid() != core.grid() || solid.grid() != allowed.grid() {
+            return Err(GridMismatch.into());
+        }
+        Ok(Target {
+            solid,
+            core,
+            allowed,
+            shape: self.clone(),
+        })
+    }
+}
+
 impl Target {
     /// A closed mesh as a target. The limits are distances from its surface: material deeper inside than `gouge` must stay, material farther outside than
     /// `excess` must go. What the limits allow is exact on each line: the union of all balls of that radius about points of the surface.
@@ -103,42 +167,7 @@ impl Target {
         rest: TargetRegion,
         regions: &[TargetRegion],
     ) -> Result<Self, TargetError> {
-        let all = || std::iter::once(&rest).chain(regions);
-        for (name, value) in all().flat_map(|part| [("gouges", part.limits[0]), ("excess", part.limits[1])]) {
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(TargetError::Limit { name, value });
-            }
-        }
-        let parts: Vec<TargetRegion> = all().cloned().collect();
-        let distances = parts.iter().filter(|_| !regions.is_empty());
-        let distances = distances.map(|part| DistanceTo::new(&part.surface));
-        let shape = Shape {
-            distance: DistanceTo::new(mesh)?,
-            distances: distances.collect::<Result<_, MeshError>>()?,
-            mesh: mesh.clone(),
-            parts,
-        };
-        Self::of_shape(grid, Arc::new(shape))
-    }
-
-    fn of_shape(grid: &Grid, shape: Arc<Shape>) -> Result<Self, TargetError> {
-        let solid = Stock::Mesh(shape.mesh.clone()).dexels(grid)?;
-        let (mut core, mut allowed) = (solid.clone(), solid.clone());
-        for part in &shape.parts {
-            let [gouge, excess] = part.limits;
-            if gouge > 0.0 {
-                core.combine(Operation::Difference, &part.surface.thickened(grid, gouge))?;
-            }
-            if excess > 0.0 {
-                allowed.combine(Operation::Union, &part.surface.thickened(grid, excess))?;
-            }
-        }
-        Ok(Self {
-            solid,
-            core,
-            allowed,
-            shape,
-        })
+        TargetShape::new(mesh, rest, regions)?.on(grid)
     }
 
     /// The same target on another grid, such as a tile.
@@ -146,7 +175,7 @@ impl Target {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn on(&self, grid: &Grid) -> Result<Self, TargetError> {
-        Self::of_shape(grid, Arc::clone(&self.shape))
+        self.shape.on(grid)
     }
 
     /// The same on a tile of its grid: what [`on`](Self::on) would compute. `None` if it is none.
@@ -156,14 +185,14 @@ impl Target {
             solid: self.solid.tile(tile)?,
             core: self.core.tile(tile)?,
             allowed: self.allowed.tile(tile)?,
-            shape: Arc::clone(&self.shape),
+            shape: self.shape.clone(),
         })
     }
 
     /// Whether a point at a (signed) distance from the surface is beyond the limit, which is that of any part of the surface.
     pub(super) fn is_beyond(&self, place: [f64; 3], distance: f64) -> bool {
         let side = usize::from(distance >= 0.0);
-        let Shape { parts, distances, .. } = &*self.shape;
+        let Shape { parts, distances, .. } = &*self.shape.0;
         if distances.is_empty() {
             return distance.abs() > parts[0].limits[side];
         }
@@ -177,13 +206,19 @@ impl Target {
     /// The part of the surface nearest to a point: 0 outside all regions, or 1 plus the number of a region.
     pub(super) fn part_at(&self, place: [f64; 3]) -> usize {
         let mut best = (f64::INFINITY, 0);
-        for (number, to) in self.shape.distances.iter().enumerate() {
+        for (number, to) in self.shape.0.distances.iter().enumerate() {
             let near = to.nearest(place).map_or(f64::INFINITY, |near| near.distance.abs());
             if near < best.0 {
                 best = (near, number);
             }
         }
         best.1
+    }
+
+    /// What does not depend on the grid.
+    #[must_use]
+    pub fn shape(&self) -> &TargetShape {
+        &self.shape
     }
 
     /// The part.
@@ -207,12 +242,12 @@ impl Target {
     /// The limits for gouges and for excess, outside all regions.
     #[must_use]
     pub fn limits(&self) -> [f64; 2] {
-        self.shape.parts[0].limits
+        self.shape.0.parts[0].limits
     }
 
     /// Distances from its surface.
     #[must_use]
     pub fn distance(&self) -> &DistanceTo {
-        &self.shape.distance
+        &self.shape.0.distance
     }
 }

@@ -5,7 +5,7 @@ use crate::base::JobError;
 use crate::verify::asked::Asked;
 use crate::verify::texts::{ProgramTexts, name_of};
 use sweepsim_formats::{Job, Measure, Statement, StatementState};
-use sweepsim_proof::{Closest, Cutter, Enclosed, Target, closest, deepest, depth_claim, distance_claim};
+use sweepsim_proof::{Closest, Cutter, Enclosed, Target, closest_from, deepest_from, depth_claim, distance_claim};
 
 /// A solid, or why it is none, and the set-up that it is there in.
 pub(super) type Obstacle<'a> = (Result<&'a Target, String>, Option<usize>);
@@ -46,7 +46,8 @@ fn kept_away(
             Ok(solid) => {
                 let movers = proof.asked.along(&bodies, *setup);
                 let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
-                let found = closest(solid, &own, &wanted, proof.recorded(), proof.session.monitor);
+                let known = proof.known(Some(asked.obstacles[number]));
+                let found = closest_from(&known, solid, &own, &wanted, proof.recorded(), proof.session.monitor);
                 let mut found = found.ok_or(JobError::Cancelled)?;
                 claims.extend(proof.claim(asked, number, |scene, question| {
                     distance_claim(scene, question, solid, &movers, &found)
@@ -115,7 +116,8 @@ fn kept_out(
             Ok(solid) => {
                 let movers = proof.asked.along(&all_solids, *setup);
                 let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
-                let found = deepest(solid, &own, &wanted, proof.recorded(), proof.session.monitor);
+                let known = proof.known(Some(asked.obstacles[number]));
+                let found = deepest_from(&known, solid, &own, &wanted, proof.recorded(), proof.session.monitor);
                 let mut found = found.ok_or(JobError::Cancelled)?;
                 claims.extend(proof.claim(asked, number, |scene, question| {
                     depth_claim(scene, question, solid, &movers, &found)

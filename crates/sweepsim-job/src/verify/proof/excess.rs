@@ -4,7 +4,7 @@ use super::{LISTED, Proof, Proven};
 use crate::base::JobError;
 use crate::verify::asked::{Asked, limits};
 use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
-use sweepsim_proof::{Convex, Cutter, Target, height_claim, highest};
+use sweepsim_proof::{Convex, Cutter, Target, height_claim, highest_from};
 
 /// If the lines have seen material that is left, how much is left has so many patches to be known better.
 const PATCHES: usize = 200_000;
@@ -34,7 +34,10 @@ pub(super) fn excess(
     if is_seen {
         wanted.pairs = PATCHES;
     }
-    let left = highest(solid, &job.stock, &along, &wanted, proof.recorded(), session.monitor);
+    let known = proof.known(Some(asked.obstacles[0]));
+    let along = &along[..];
+    let recorded = proof.recorded();
+    let left = highest_from(&known, (solid, &job.stock), along, &wanted, recorded, session.monitor);
     let left = left.map_err(|error| session.failure(format!("stock: {error}")))?;
     let left = left.ok_or(JobError::Cancelled)?;
     let claims = proof.claim(asked, 0, |scene, question| {

@@ -14,12 +14,13 @@ use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
+use crate::base::cache::{Digest, Key, RunCache};
 use crate::session::Session;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
 use sweepsim_formats::{
     Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
 };
-use sweepsim_proof::{Cutter, Enclosed, OpenBox, Target, Witness, deepest, depth_claim};
+use sweepsim_proof::{Cutter, Enclosed, OpenBox, Recall, Target, Witness, deepest_from, depth_claim};
 
 /// As many open places are listed.
 const LISTED: usize = 100;
@@ -50,9 +51,67 @@ struct Proof<'a> {
     session: Session<'a>,
     asked: AskedAll<'a>,
     scene: Scene,
+    /// Whether what earlier runs have proven is used.
+    recalls: bool,
 }
 
-impl Proof<'_> {
+/// What earlier runs have proven about something.
+struct Recalled<'a>(Option<(&'a RunCache, Key)>);
+
+impl Recalled<'_> {
+    fn entry(&self, question: &Key) -> Option<(&RunCache, Key)> {
+        let (cache, about) = self.0?;
+        Some((cache, Digest::of("answer").bytes(&about).bytes(question).key()))
+    }
+}
+
+impl Recall for Recalled<'_> {
+    fn keeps(&self) -> bool {
+        self.0.is_some()
+    }
+
+    fn digest(&self, question: &[u8]) -> Key {
+        Digest::of("question").bytes(question).key()
+    }
+
+    fn recall(&self, question: &Key) -> Option<Vec<u8>> {
+        let (cache, key) = self.entry(question)?;
+        cache.get(&key).map(<[u8]>::to_vec)
+    }
+
+    fn keep(&self, question: &Key, answer: Vec<u8>) {
+        if let Some((cache, key)) = self.entry(question) {
+            cache.put(key, answer);
+        }
+    }
+}
+
+impl<'a> Proof<'a> {
+    /// What is known of the stock and of an obstacle, if it is about one.
+    fn known(&self, obstacle: Option<usize>) -> Recalled<'a> {
+        let known = |cache| {
+            let own = Digest::of("proof").bytes(&self.session.digests().0);
+            let obstacle = obstacle.map(|number| (number, &self.asked.obstacles[number]));
+            let own = match obstacle {
+                Some((number, obstacle)) => {
+                    let own = own.number(1).floats(&[self.lift(number)]);
+                    match &obstacle.triangles {
+                        Ok(soup) => own.triangles(soup),
+                        Err(reason) => own.value(reason),
+                    }
+                }
+                None => own.number(0),
+            };
+            (cache, own.key())
+        };
+        Recalled(self.session.cache().filter(|_| self.recalls).map(known))
+    }
+
+    /// How far something may have to be lifted out of an obstacle.
+    fn lift(&self, obstacle: usize) -> f64 {
+        LIFTS * self.asked.deepest(obstacle)
+    }
+
     /// Whether proofs are kept for a checker.
     #[allow(clippy::unused_self)]
     fn recorded(&self) -> bool {
@@ -82,14 +141,30 @@ impl Proof<'_> {
 pub(super) fn statements(
     session: Session,
     texts: &mut ProgramTexts,
-    (seen, is_left): (&[ReportedFinding], bool),
+    seen: (&[ReportedFinding], bool),
 ) -> Result<All, JobError> {
     session.phase("proof");
+    let (all, is_crowded) = proven(session, texts, seen, session.cache().is_some())?;
+    match is_crowded && session.cache().is_some() {
+        // What is found then must not depend on what was known.
+        true => Ok(proven(session, texts, seen, false)?.0),
+        false => Ok(all),
+    }
+}
+
+/// The same, and whether a work nearly ran out of room. `recalls`: whether what earlier runs have proven is used.
+fn proven(
+    session: Session,
+    texts: &mut ProgramTexts,
+    (seen, is_left): (&[ReportedFinding], bool),
+    recalls: bool,
+) -> Result<(All, bool), JobError> {
     let asked = AskedAll::new(session.job, session.request);
     let proof = Proof {
         session,
         scene: asked.scene(),
         asked,
+        recalls,
     };
     let solid_of = |number: usize, obstacle: &super::asked::Obstacle| {
         let what = match obstacle.setup {
@@ -99,7 +174,7 @@ pub(super) fn statements(
         let solid = obstacle.triangles.as_ref().map_err(String::clone);
         (
             number,
-            solid.and_then(|soup| solids::of_mesh(soup, what, LIFTS * proof.asked.deepest(number))),
+            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number))),
             obstacle.setup,
         )
     };
@@ -144,7 +219,8 @@ pub(super) fn statements(
         scene: proof.scene.digest(),
         claims,
     });
-    Ok((statements, findings, certified))
+    let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
+    Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
 
 /// What is proven of gouges.
@@ -167,7 +243,8 @@ fn gouges(
     let solids = proof.asked.solids(asked);
     let movers = proof.asked.along(&solids, None);
     let own: Vec<Cutter> = movers.iter().map(|(_, cutter)| *cutter).collect();
-    let found = deepest(
+    let found = deepest_from(
+        &proof.known(Some(asked.obstacles[0])),
         solid,
         &own,
         &proof.asked.limits(asked),

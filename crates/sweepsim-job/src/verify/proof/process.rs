@@ -9,7 +9,7 @@ use crate::verify::scope::is_guessed;
 use crate::verify::texts::ProgramTexts;
 use std::collections::BTreeMap;
 use sweepsim_formats::{Job, JobPath, Measure, Statement, StatementState};
-use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, touched};
+use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, touched_from};
 
 /// What is proven of bodies and rapids beside the stock; nothing of a stock that was guessed.
 pub(super) fn beside_stock(proof: &Proof, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
@@ -65,7 +65,7 @@ fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Move
     });
     let work: Vec<Work> = work.collect();
     let room = proof.asked.room(movers);
-    let found = touched(&job.stock, &work, movers, &room, session.monitor);
+    let found = touched_from(&proof.known(None), &job.stock, &work, movers, &room, session.monitor);
     let found = found.map_err(|error| session.failure(format!("stock: {error}")))?;
     let found = found.ok_or(JobError::Cancelled)?;
     let about = match movers {

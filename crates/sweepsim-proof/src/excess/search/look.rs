@@ -4,6 +4,7 @@ use super::super::record::{Record, key};
 use super::super::removed::{Holder, Known};
 use super::super::surface::{Halved, Patch};
 use super::{FINEST, Found, MOST_OPEN, SHARE, STEPS, Scene};
+use crate::motion::Bounds;
 use nalgebra::Vector3;
 
 /// The search in a patch.
@@ -16,6 +17,8 @@ pub(super) struct Search<'a> {
     pub found: Found,
     /// What held the patch before.
     pub recent: Option<Holder>,
+    /// A box around all points about which it was asked whether they were removed.
+    pub around: Bounds,
 }
 
 impl Search<'_> {
@@ -37,6 +40,7 @@ impl Search<'_> {
                 self.record(Record::outside);
                 continue;
             }
+            self.asks(&points);
             let Known {
                 mut held,
                 holder,
@@ -54,7 +58,7 @@ impl Search<'_> {
             if points.len() != whole.len() {
                 held.clear();
             }
-            if !is_removed && scene.is_left(&middle) {
+            if !is_removed && self.is_left(&middle) {
                 let height = scene.height(&middle) - scene.removed.margin;
                 self.found.take(middle, height);
                 // Else the middle is not of the surface.
@@ -94,6 +98,19 @@ impl Search<'_> {
         is_near.then_some(triangle.corners)
     }
 
+    /// Notes that it matters what was removed around some points.
+    fn asks(&mut self, points: &[Vector3<f64>]) {
+        for point in points {
+            self.around.low = self.around.low.inf(point);
+            self.around.high = self.around.high.sup(point);
+        }
+    }
+
+    fn is_left(&mut self, point: &Vector3<f64>) -> bool {
+        self.asks(&[*point]);
+        self.scene.is_left(point)
+    }
+
     /// Looks how far what is left reaches, above a place where something is left.
     fn rise(&mut self, patch: &Patch) {
         let scene = self.scene;
@@ -101,18 +118,17 @@ impl Search<'_> {
         // Only if it is higher than what is known.
         let known = self.known.max(self.found.height());
         let at = |height: f64| from + up * height;
-        let is_left = |height: f64| scene.is_left(&at(height));
         let mut low = known.max(self.distance) + self.finer;
-        if !is_left(low) {
+        if !self.is_left(&at(low)) {
             return;
         }
         let mut high = 2.0 * low;
-        while is_left(high) {
+        while self.is_left(&at(high)) {
             (low, high) = (high, 2.0 * high);
         }
         for _ in 0..STEPS {
             let middle = 0.5 * (low + high);
-            if is_left(middle) {
+            if self.is_left(&at(middle)) {
                 low = middle;
             } else {
                 high = middle;

@@ -64,6 +64,7 @@ impl Work<'_> {
         if cut.is_empty() {
             return;
         }
+        self.changes += 1;
         let grid = *self.remaining.grid();
         let [dx, dy] = grid.spacing();
         let before = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));

@@ -2,6 +2,7 @@
 
 mod at_joints;
 mod by_force;
+mod checkpoints;
 mod deviation;
 mod regions;
 mod removal;

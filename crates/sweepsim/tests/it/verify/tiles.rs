@@ -13,11 +13,11 @@ use sweepsim_dexel::{Grid, TriangleSoup};
 use sweepsim_motion::{Assembly, BodyKind};
 
 /// A raster with a holder that drags through the stock, rapids that are too low, and a target that is cut into.
-struct Program {
-    case: Case,
-    assembly: Assembly,
-    path: Path,
-    target: TriangleSoup,
+pub(super) struct Program {
+    pub case: Case,
+    pub assembly: Assembly,
+    pub path: Path,
+    pub target: TriangleSoup,
 }
 
 /// A box as a mesh.
@@ -37,7 +37,7 @@ fn block([low, high]: [[f64; 3]; 2]) -> TriangleSoup {
 }
 
 impl Program {
-    fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         let random = &mut Random::new(seed);
         let mut case = clean(random);
         for (n, pose) in case.poses.iter_mut().enumerate() {
@@ -57,7 +57,7 @@ impl Program {
         }
     }
 
-    fn scene<'a>(&self, tile: &Grid, target: &'a Target) -> Scene<'a> {
+    pub fn scene<'a>(&self, tile: &Grid, target: &'a Target) -> Scene<'a> {
         let [min, max] = self.case.stock;
         Scene::new(Stock::Block { min, max }.dexels(tile).unwrap()).with_target(target)
     }

@@ -1,16 +1,23 @@
 //! A program as it is judged: its tools with their bodies, its moves with the state of the machine, and the tiles on
 //! which they are judged.
 
+mod kept;
+mod runs;
+
 use super::{fixtures, targets};
+use crate::base::cache::{Digest, Key, RunCache};
 use crate::base::{JobError, words};
 use crate::request::Judging;
 use crate::session::Session;
 use crate::shards::{Purpose, TilingSet};
+use kept::KeptStates;
 use rayon::prelude::*;
+use runs::RunKeys;
 use std::collections::BTreeMap;
 use sweepsim::motion::{Assembly, Tool};
 use sweepsim::verify::{
-    AreaShare, MoveState, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
+    AreaShare, Checkpoints, MoveState, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions,
+    verify_tiles_from,
 };
 use sweepsim_dexel::{Dexels, StockError};
 use sweepsim_formats::{Job, JobPath, Report};
@@ -73,7 +80,6 @@ impl<'a> JudgedProgram<'a> {
         let failed = |what: &'static str| move |error: &dyn std::fmt::Display| format!("{what}: {error}");
         let failure = |text: String| self.session.failure(text);
         let options = self.options.clone().until(until);
-        let monitor = self.session.monitor;
         match set.purpose {
             Purpose::Cut => Ok(Vec::new()),
             Purpose::Judge { each_move, compare } => {
@@ -95,13 +101,19 @@ impl<'a> JudgedProgram<'a> {
                 });
                 let (_, toolpaths) = self.toolpaths(None);
                 let options = options.each_move(each_move);
-                let done = verify_tiles(scenes.collect(), &toolpaths, &options, monitor);
-                let done = done.map_err(|error| self.session.failed(error))?;
+                let base = || self.base(set, &options);
+                let done = self.judged(scenes.collect(), &toolpaths, &options, &base)?;
                 // Computed again: to keep all of it would take twice the memory.
                 let compared = |((tile, target), done): ((&usize, &Option<Target>), TileVerification)| {
                     let differs = |(target, share): (&Target, AreaShare)| {
-                        let before = on_tile(tile)?;
-                        Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target, share))
+                        let compared = || {
+                            let before = on_tile(tile)?;
+                            Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target, share))
+                        };
+                        match self.session.cache() {
+                            Some(cache) => known_deviation(cache, base(), &done.remaining, compared),
+                            None => compared(),
+                        }
                     };
                     let deviation = target.as_ref().zip(compare).map(differs).transpose()?;
                     Ok((done, deviation))
@@ -121,19 +133,64 @@ impl<'a> JudgedProgram<'a> {
                     .iter()
                     .map(|own| Scene::new(Dexels::empty(*own.grid())).with_fixtures(own));
                 let (numbers, toolpaths) = self.toolpaths(Some(setup));
-                let done = verify_tiles(
-                    scenes.collect(),
-                    &toolpaths,
-                    &options.first(self.options.first),
-                    monitor,
-                );
-                let mut done = done.map_err(|error| self.session.failed(error))?;
+                let base = || self.base(set, &options);
+                let mut done = self.judged(scenes.collect(), &toolpaths, &options, &base)?;
                 for tile in &mut done {
                     tile.record = std::mem::take(&mut tile.record).renumbered(&numbers, job.paths.len());
                 }
                 Ok(done.into_iter().map(|tile| (tile, None)).collect())
             }
         }
+    }
+
+    /// What is found on some tiles; as far as it is known, without looking again.
+    fn judged(
+        &self,
+        scenes: Vec<Scene>,
+        toolpaths: &[ToolPath],
+        options: &VerifyOptions,
+        base: &dyn Fn() -> Key,
+    ) -> Result<Vec<TileVerification>, JobError> {
+        let monitor = self.session.monitor;
+        let keys;
+        let kept = match self.session.cache() {
+            Some(cache) => {
+                keys = RunKeys::new(toolpaths);
+                let tiles = scenes.iter().map(|scene| *scene.stock.grid()).collect();
+                let kept = KeptStates::new(cache, base(), &keys, tiles);
+                cache.judged(kept.again());
+                Some(kept)
+            }
+            None => None,
+        };
+        let checkpoints: &dyn Checkpoints = match &kept {
+            Some(kept) => kept,
+            None => &(),
+        };
+        let done = verify_tiles_from(scenes, toolpaths, options, checkpoints, monitor);
+        done.map_err(|error| self.session.failed(error))
+    }
+
+    /// What is found on the tiles of a set follows from this and from the toolpaths.
+    fn base(&self, set: &TilingSet, options: &VerifyOptions) -> Key {
+        let job = self.session.job;
+        let own = Digest::of("tiles").value(&set.purpose).value(&set.grid).value(options);
+        let own = match &set.within {
+            Some(within) => own.stock(within),
+            None => own.number(0),
+        };
+        match set.purpose {
+            Purpose::Cut => own,
+            Purpose::Judge { .. } => {
+                let (stock, target) = self.session.digests();
+                own.bytes(&stock).bytes(&target)
+            }
+            Purpose::Fixtures(setup) => {
+                let fixtures = &job.setups[setup].fixtures;
+                fixtures.iter().fold(own.number(fixtures.len()), Digest::stock)
+            }
+        }
+        .key()
     }
 
     /// The target on some tiles.
@@ -152,18 +209,41 @@ impl<'a> JudgedProgram<'a> {
         let known = match known {
             Some(known) => Some(known),
             None => {
-                made = targets::of_job(job, &set.tiles[*first]).map_err(failed)?;
+                made = targets::of_job(self.session, &set.tiles[*first]).map_err(failed)?;
                 made.as_ref()
             }
         };
         let on = |tile: &usize| {
             let tile = &set.tiles[*tile];
             known
-                .map(|known| known.tile(tile).map_or_else(|| known.on(tile), Ok))
+                .map(|known| known.tile(tile).map_or_else(|| targets::on(self.session, known, tile), Ok))
                 .transpose()
         };
         tiles.par_iter().map(on).collect::<Result<_, _>>().map_err(failed)
     }
+}
+
+/// How a tile differs from the target, if it was compared before.
+fn known_deviation(
+    cache: &RunCache,
+    base: Key,
+    remaining: &Dexels,
+    compared: impl FnOnce() -> Result<TileDeviation, StockError>,
+) -> Result<TileDeviation, StockError> {
+    let key = Digest::of("deviation").bytes(&base).value(remaining.grid());
+    let key = key.bytes(&remaining.state()).key();
+    let known = cache.get(&key).map(serde_json::from_slice);
+    if let Some(Ok(known)) = known {
+        return Ok(known);
+    }
+    if known.is_some() {
+        cache.spoilt();
+    }
+    let found = compared()?;
+    if let Ok(text) = serde_json::to_vec(&found) {
+        cache.put(key, text);
+    }
+    Ok(found)
 }
 
 /// The cutters, each with its bodies, all round larger by these margins.

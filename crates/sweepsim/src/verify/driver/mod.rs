@@ -1,35 +1,44 @@
 //! A program in its order: runs of moves, one after the other.
 
-use super::finding::Finding;
-use super::record::{Judgement, TileFinding, TileRecord};
-use super::scene::{Scene, ToolPath, Verification, VerifyOptions};
-use super::solid::MovingSolid;
-use super::target::Target;
+mod checkpoints;
+mod runs;
+mod solids;
+
+pub use checkpoints::{Checkpoints, TileNotes, TileState};
+pub use runs::{RunOfMoves, runs_of};
+pub(super) use solids::Solids;
+
+use runs::{before, runs, stretches};
+use crate::verify::finding::Finding;
+use crate::verify::record::{Judgement, TileFinding, TileRecord};
+use crate::verify::scene::{Scene, ToolPath, Verification, VerifyOptions};
+use crate::verify::target::Target;
 use crate::error::SweepError;
 use crate::sweep::heights::HeightMap;
-use crate::sweep::{CHUNK, Options, STRETCH, UnresolvedDexel};
+use crate::sweep::{Options, STRETCH, UnresolvedDexel};
 use rayon::prelude::*;
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::Dexels;
-use sweepsim_motion::{Assembly, Path, Tool};
 use sweepsim_solve::Monitor;
 
 /// The state between two runs, on one grid or tile.
-pub(super) struct Work<'a> {
-    pub(super) remaining: Dexels,
-    pub(super) heights: HeightMap,
+pub(in crate::verify) struct Work<'a> {
+    pub(in crate::verify) remaining: Dexels,
+    pub(in crate::verify) heights: HeightMap,
     /// The scene's own fixtures.
     own_fixtures: Option<&'a Dexels>,
-    pub(super) fixtures: Option<(&'a Dexels, HeightMap)>,
-    pub(super) target: Option<&'a Target>,
+    pub(in crate::verify) fixtures: Option<(&'a Dexels, HeightMap)>,
+    pub(in crate::verify) target: Option<&'a Target>,
     /// Options of the sweeps; the path number is that of the present toolpath.
-    pub(super) options: Options,
-    pub(super) each_move: bool,
-    pub(super) monitor: &'a dyn Monitor,
-    pub(super) done: TileRecord,
-    pub(super) crossings: u64,
-    pub(super) unresolved: Vec<UnresolvedDexel>,
+    pub(in crate::verify) options: Options,
+    pub(in crate::verify) each_move: bool,
+    pub(in crate::verify) monitor: &'a dyn Monitor,
+    pub(in crate::verify) done: TileRecord,
+    pub(in crate::verify) crossings: u64,
+    pub(in crate::verify) unresolved: Vec<UnresolvedDexel>,
+    /// How often something was removed.
+    pub(in crate::verify) changes: u64,
 }
 
 /// Judges the moves of a program in their order, and removes what they cut.
@@ -71,7 +80,7 @@ pub fn verify(
 ) -> Result<Verification, SweepError> {
     let mut works = [Work::new(scene, program, options, monitor)?];
     let mut seen = 0;
-    drive(&mut works, program, options, 1, &mut |works| {
+    drive(&mut works, program, options, (1, &()), &mut |works| {
         let work = &mut works[0];
         work.done.findings[seen..].sort_by(|a, b| {
             let key = |own: &TileFinding| (own.finding.number, own.finding.time, own.finding.kind);
@@ -158,6 +167,20 @@ pub fn verify_tiles(
     options: &VerifyOptions,
     monitor: &dyn Monitor,
 ) -> Result<Vec<TileVerification>, SweepError> {
+    verify_tiles_from(scenes, program, options, &(), monitor)
+}
+
+/// The same, beginning where states of all tiles are [known](Checkpoints::start), and leaving others on the way. The result is the same to the bit.
+///
+/// # Errors
+/// Those of [`verify_tiles`], and [`SweepError::Tiles`] if the states are not of these tiles.
+pub fn verify_tiles_from(
+    scenes: Vec<Scene>,
+    program: &[ToolPath],
+    options: &VerifyOptions,
+    checkpoints: &dyn Checkpoints,
+    monitor: &dyn Monitor,
+) -> Result<Vec<TileVerification>, SweepError> {
     let mut wholes = scenes.iter().map(|scene| scene.stock.grid().whole());
     if let Some(first) = wholes.next()
         && wholes.any(|other| other != first)
@@ -168,7 +191,7 @@ pub fn verify_tiles(
     let works = works.map(|scene| Work::new(scene, program, options, monitor));
     let mut works = works.collect::<Result<Vec<_>, _>>()?;
     let step = if options.first { 1 } else { usize::MAX };
-    drive(&mut works, program, options, step, &mut |works| {
+    drive(&mut works, program, options, (step, checkpoints), &mut |works| {
         if options.first && works.iter().any(|work| !work.done.findings.is_empty()) {
             ControlFlow::Break(())
         } else {
@@ -178,16 +201,24 @@ pub fn verify_tiles(
     Ok(works.into_iter().map(Work::finish).collect())
 }
 
-/// Judges all runs of a program, on tiles of one grid: `step` runs of a toolpath at a time, after which `after` may end it.
+/// Judges all runs of a program, on tiles of one grid: `step` runs of a toolpath at a time, after which `after` may end it. Runs whose outcome is known are left out.
 fn drive<'a>(
     works: &mut [Work<'a>],
     program: &[ToolPath<'a>],
     options: &VerifyOptions,
-    step: usize,
+    (step, checkpoints): (usize, &dyn Checkpoints),
     after: &mut dyn FnMut(&mut [Work<'a>]) -> ControlFlow<()>,
 ) -> Result<(), SweepError> {
     let total = program.iter().map(|tool| tool.path.moves()).sum();
-    let mut before = 0;
+    let known = match checkpoints.start() {
+        Some((known, states)) => {
+            restore(works, states)?;
+            known
+        }
+        None => 0,
+    };
+    // Moves and runs of the paths before.
+    let (mut moves_before, mut runs_before) = (0, 0);
     for (number, toolpath) in program.iter().enumerate() {
         for work in works.iter_mut() {
             let path_number = u32::try_from(number).unwrap_or(u32::MAX);
@@ -201,21 +232,33 @@ fn drive<'a>(
         if let Some((_, last)) = last {
             runs.truncate(runs.partition_point(|run| run.start <= last).max(1));
         }
+        let known = known.saturating_sub(runs_before).min(runs.len());
+        let mut first = 0;
         let mut stop = ControlFlow::Continue(());
         for stretch in stretches(&runs, STRETCH / Solids::count(toolpath)) {
-            let moves = stretch[0].start..stretch[stretch.len() - 1].end;
+            let begin = first;
+            first += stretch.len();
+            let left = &stretch[known.saturating_sub(begin).min(stretch.len())..];
+            let Some(moves) = left.first() else { continue };
+            let moves = before(toolpath, stretch[0].start, moves.start)..stretch[stretch.len() - 1].end;
             // The same for all tiles: they see the extent of the whole grid.
             let solids = Solids::new(toolpath, moves, &works[0])?;
-            for batch in stretch.chunks(step) {
+            let mut done = runs_before + first - left.len();
+            for batch in left.chunks(step) {
                 let judged = AtomicUsize::new(0);
-                works.par_iter_mut().with_max_len(1).try_for_each(|work| {
-                    batch.iter().try_for_each(|moves| {
+                let tiles = works.par_iter_mut().enumerate().with_max_len(1);
+                tiles.try_for_each(|(tile, work)| {
+                    batch.iter().zip(done + 1..).try_for_each(|(moves, runs)| {
                         work.run(number, toolpath, &solids, moves.clone())?;
+                        if checkpoints.wants(runs) {
+                            work.keep(tile, runs, checkpoints);
+                        }
                         let judged = judged.fetch_add(moves.len(), Ordering::Relaxed) + moves.len();
-                        monitor.advance(before + batch[0].start + judged / count, total);
+                        monitor.advance(moves_before + batch[0].start + judged / count, total);
                         Ok(())
                     })
                 })?;
+                done += batch.len();
                 stop = after(works);
                 if stop.is_break() {
                     break;
@@ -229,109 +272,29 @@ fn drive<'a>(
             works.iter_mut().for_each(|work| work.done.stopped = true);
             break;
         }
-        before += toolpath.path.moves();
+        moves_before += toolpath.path.moves();
+        runs_before += runs.len();
     }
     Ok(())
 }
 
-/// A cutter and its bodies, prepared.
-pub(super) struct Solids<'a> {
-    pub(super) cutter: MovingSolid<'a>,
-    pub(super) bodies: Vec<MovingSolid<'a>>,
-    /// The same taken larger, if they are.
-    pub(super) larger: Option<Box<Self>>,
-}
-
-impl<'a> Solids<'a> {
-    /// Along some moves of a toolpath.
-    pub(super) fn new(toolpath: &ToolPath<'a>, moves: Range<usize>, work: &Work) -> Result<Self, SweepError> {
-        // The run of a path of one pose counts a move that the path does not have.
-        let moves = moves.start..moves.end.min(toolpath.path.moves());
-        let mut grids = vec![work.remaining.grid().whole()];
-        grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
-        let solid = |tool: &'a Tool| MovingSolid::new(tool, (toolpath.path, moves.clone()), &grids, &work.options);
-        let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
-            let bodies = assembly.bodies().iter();
-            Ok(Self {
-                cutter: solid(assembly.cutter())?,
-                bodies: bodies.map(|body| solid(&body.solid)).collect::<Result<_, _>>()?,
-                larger: None,
-            })
-        };
-        let larger = toolpath.larger.map(solids).transpose()?;
-        Ok(Self {
-            larger: larger.map(Box::new),
-            ..solids(toolpath.assembly)?
-        })
+/// The states of all tiles after some runs.
+fn restore(works: &mut [Work], states: Vec<TileState>) -> Result<(), SweepError> {
+    let is_of = |(work, state): (&Work, &TileState)| work.remaining.grid() == state.remaining.grid();
+    if works.len() != states.len() || !works.iter().zip(&states).all(is_of) {
+        return Err(SweepError::Tiles);
     }
-
-    /// The number of them.
-    fn count(toolpath: &ToolPath) -> usize {
-        let assemblies = std::iter::once(toolpath.assembly).chain(toolpath.larger);
-        assemblies.map(|assembly| 1 + assembly.bodies().len()).sum()
-    }
-
-    /// The same along another path.
-    pub(super) fn along(&self, path: &Path, work: &Work) -> Result<Self, SweepError> {
-        let solid = |solid: &MovingSolid<'a>| solid.along(path, work.remaining.grid(), &work.options);
-        let larger = self
-            .larger
-            .as_ref()
-            .map(|larger| larger.along(path, work))
-            .transpose()?;
-        Ok(Self {
-            cutter: solid(&self.cutter)?,
-            bodies: self.bodies.iter().map(solid).collect::<Result<_, _>>()?,
-            larger: larger.map(Box::new),
-        })
-    }
-
-    /// The cutter, and the bodies by their numbers: each as it is looked for, and itself if that is a larger one.
-    pub(super) fn probes(&self) -> impl Iterator<Item = (Option<usize>, &MovingSolid<'a>, Option<&MovingSolid<'a>>)> {
-        let bodies = self.bodies.iter().enumerate();
-        let own = std::iter::once((None, &self.cutter)).chain(bodies.map(|(n, body)| (Some(n), body)));
-        own.map(|(number, itself)| {
-            let larger = self.larger.as_ref().and_then(|larger| match number {
-                None => Some(&larger.cutter),
-                Some(n) => larger.bodies.get(n),
-            });
-            match larger {
-                Some(larger) => (number, larger, Some(itself)),
-                None => (number, itself, None),
-            }
-        })
-    }
-}
-
-/// Runs of consecutive moves in one state, none longer than a chunk.
-fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
-    // A path of one pose has no move, but its tool removes what it covers.
-    let count = toolpath.path.moves().max(1);
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for number in 0..count {
-        match runs.last_mut() {
-            Some(run) if run.len() < CHUNK && toolpath.state(run.start) == toolpath.state(number) => run.end += 1,
-            _ => runs.push(number..number + 1),
-        }
-    }
-    runs
-}
-
-/// Runs that are prepared together, of at most so many moves but at least one run: memory grows with the moves.
-fn stretches(runs: &[Range<usize>], most: usize) -> impl Iterator<Item = &[Range<usize>]> {
-    let mut first = 0;
-    std::iter::from_fn(move || {
-        let start = runs.get(first)?.start;
-        let count = runs[first..].partition_point(|run| run.end - start <= most).max(1);
-        let stretch = &runs[first..first + count];
-        first += count;
-        Some(stretch)
-    })
+    works
+        .par_iter_mut()
+        .with_max_len(1)
+        .zip(states)
+        .for_each(|(work, state)| work.restore(state));
+    Ok(())
 }
 
 impl<'a> Work<'a> {
     /// No material is higher.
-    pub(super) fn top(&self) -> f64 {
+    pub(in crate::verify) fn top(&self) -> f64 {
         let fixtures = self.fixtures.as_ref().map(|(_, heights)| heights.top());
         self.heights.top().max(fixtures.unwrap_or(f64::NEG_INFINITY))
     }
@@ -362,6 +325,7 @@ impl<'a> Work<'a> {
             done: TileRecord::new(program.len()),
             crossings: 0,
             unresolved: Vec::new(),
+            changes: 0,
             remaining: scene.stock,
         })
     }

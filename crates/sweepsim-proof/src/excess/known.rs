@@ -1,0 +1,134 @@
+//! Answers to looks at patches that are known: they follow from the moves that come near.
+//!
+//! A search asks what was removed around some points. It is kept with a box that holds all of these, and a digest of all
+//! stretches whose boxes meet it. If that is the same again, so is every answer within the search, and the search asks
+//! for the same points.
+
+use super::removed::Removed;
+use super::search::Found;
+use crate::motion::Bounds;
+use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
+use nalgebra::Vector3;
+
+/// So many stretches have a digest together.
+const TOGETHER: usize = 64;
+
+/// Stretches of all courses, some at a time: a box around what solids sweep there, and a digest.
+pub(super) struct Blocks<'a> {
+    recall: &'a dyn Recall,
+    all: Vec<([f32; 6], QuestionDigest)>,
+    /// What is asked of all patches.
+    question: Vec<u8>,
+}
+
+impl<'a> Blocks<'a> {
+    /// `question`: what is known of the search but for the stretches.
+    pub fn new(recall: &'a dyn Recall, removed: &Removed, mut question: Writing) -> Self {
+        let mut all = Vec::new();
+        for (number, course) in removed.courses.iter().enumerate() {
+            let solids: Vec<_> = course.solids.iter().map(|own| own.convex).collect();
+            question.bytes(format!("{solids:?}").as_bytes());
+            let hulls = course.solids.iter().map(|own| own.boxes.hulls(TOGETHER));
+            let hulls = hulls.reduce(|mut all, own| {
+                all.iter_mut().zip(own).for_each(|(a, b)| {
+                    for k in 0..3 {
+                        (a[k], a[k + 3]) = (a[k].min(b[k]), a[k + 3].max(b[k + 3]));
+                    }
+                });
+                all
+            });
+            for (first, (hull, some)) in hulls.into_iter().flatten().zip(course.stretches.chunks(TOGETHER)).enumerate() {
+                let mut content = Writing::default();
+                content.number(number);
+                content.number(first);
+                some.iter().for_each(|stretch| stretch.write(&mut content));
+                all.push((hull, recall.digest(&content.0)));
+            }
+        }
+        Self {
+            recall,
+            all,
+            question: question.0,
+        }
+    }
+
+    /// A digest of all stretches that may meet a box.
+    fn around(&self, around: &Bounds) -> QuestionDigest {
+        let (low, high) = (around.low.map(|c| (c as f32).next_down()), around.high.map(|c| (c as f32).next_up()));
+        let mut near = Vec::new();
+        for (own, digest) in &self.all {
+            if (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]) {
+                near.extend_from_slice(digest);
+            }
+        }
+        self.recall.digest(&near)
+    }
+
+    /// What is found at some patches: known, or as it is looked for; with a box around all that was asked for then.
+    pub fn found(
+        &self,
+        asked: impl FnOnce(&mut Writing),
+        count: usize,
+        look: impl FnOnce() -> Option<(Vec<Found>, Bounds)>,
+    ) -> Option<Vec<Found>> {
+        let mut question = Writing(self.question.clone());
+        asked(&mut question);
+        let key = self.recall.digest(&question.0);
+        let known = self.recall.recall(&key).and_then(|bytes| self.read(&bytes, count));
+        if known.is_some() {
+            return known;
+        }
+        let (found, around): (Vec<Found>, Bounds) = look()?;
+        let mut answer = Writing::default();
+        answer.floats(around.low.as_slice());
+        answer.floats(around.high.as_slice());
+        answer.0.extend(self.around(&around));
+        answer.0.extend(Found::write_all(&found));
+        self.recall.keep(&key, answer.0);
+        Some(found)
+    }
+
+    fn read(&self, bytes: &[u8], count: usize) -> Option<Vec<Found>> {
+        let mut from = Reading(bytes);
+        let [low, high] = [from.point()?, from.point()?].map(Vector3::from);
+        let (digest, rest) = from.0.split_first_chunk::<32>()?;
+        let is_same = *digest == self.around(&Bounds { low, high });
+        is_same.then(|| Found::read_all(rest, count))?
+    }
+}
+
+/// A box with nothing in it.
+pub(super) fn nothing() -> Bounds {
+    Bounds {
+        low: Vector3::repeat(f64::INFINITY),
+        high: Vector3::repeat(f64::NEG_INFINITY),
+    }
+}
+
+impl Answer for Found {
+    fn write(&self, to: &mut Writing) {
+        to.list(self.highest.iter(), |to, (place, height)| {
+            to.floats(place.as_slice());
+            to.floats(&[*height]);
+        });
+        to.number(usize::from(self.is_left));
+        to.list(self.open.iter(), |to, [low, high]| {
+            to.floats(low);
+            to.floats(high);
+        });
+        to.number(self.open_count);
+        to.number(self.patches);
+        to.bytes(self.record.bytes());
+    }
+
+    fn read(from: &mut Reading) -> Option<Self> {
+        Some(Self {
+            highest: from.list(|from| Some((from.point()?.into(), from.float()?)))?.pop(),
+            is_left: from.number()? > 0,
+            open: from.list(|from| Some([from.point()?, from.point()?]))?,
+            open_count: from.number()?,
+            patches: from.number()?,
+            record: super::record::Record::of_bytes(from.bytes()?),
+        })
+    }
+}

@@ -1,0 +1,52 @@
+//! Answers to looks at ranges of moves that are known: they follow from all moves up to there.
+
+use super::scene::{Found, Room, Work};
+use super::search::TOGETHER;
+use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
+
+/// Digests of all that is done up to the end of each range of moves, of all paths.
+pub(super) fn prefixes(recall: &dyn Recall, work: &[Work], room: &Room) -> Vec<Vec<QuestionDigest>> {
+    let mut before = QuestionDigest::default();
+    let mut all = Vec::with_capacity(work.len());
+    for own in work {
+        let mut question = Writing::default();
+        question.0.extend(before);
+        question.bytes(format!("{:?} {:?}", own.cutter.solids, own.bodies).as_bytes());
+        before = recall.digest(&question.0);
+        let moves = own.cutter.path.moves();
+        let ranges = (0..moves).step_by(TOGETHER).map(|from| {
+            let range = from..moves.min(from + TOGETHER);
+            let mut question = Writing::default();
+            question.0.extend(before);
+            question.moves(&own.cutter, range.clone(), room.deviation);
+            question.0.extend(range.map(|number| u8::from((own.is_rapid)(number))));
+            before = recall.digest(&question.0);
+            before
+        });
+        all.push(ranges.collect());
+    }
+    all
+}
+
+impl Answer for Found {
+    fn write(&self, to: &mut Writing) {
+        to.list(self.moves.values(), Writing::witness);
+        to.list(self.open.iter(), Writing::open);
+        to.list(self.open_counts.iter(), |to, (number, count)| {
+            to.number(*number);
+            to.number(*count);
+        });
+        to.number(self.zones);
+    }
+
+    fn read(from: &mut Reading) -> Option<Self> {
+        Some(Self {
+            moves: { from.list(Reading::witness)?.into_iter() }
+                .map(|own| (own.number, own))
+                .collect(),
+            open: from.list(Reading::open)?,
+            open_counts: { from.list(|from| Some((from.number()?, from.number()?)))?.into_iter() }.collect(),
+            zones: from.number()?,
+        })
+    }
+}
