@@ -33,13 +33,15 @@ mod tri;
 mod vector;
 
 pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
-pub use deviation::{DeviationAt, DistanceRange, Surface, SurfaceDeviations};
+pub use deviation::{DeviationAt, DistanceRange, Surface, SurfaceDeviations, SurfacePoint};
 pub use dexels::{
     Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, TilesError, pack_normal, unpack_normal,
 };
 pub use grid::{Frame, FrameError, Grid, GridError};
 pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};
-pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, NearestTriangle, TriangleSoup};
+pub use mesh::{
+    AnalyticSurface, ClusteredMesh, DistanceTo, FaceSurfaces, Mesh, MeshError, Nearest, NearestTriangle, TriangleSoup,
+};
 pub use stock::{Stock, StockError};
 pub use tri::{TriDexels, TriDexelsError};
 

@@ -62,7 +62,7 @@ pub use drafts::{Draft, DraftOptions, DraftStock, Guess, draft, draft_of};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
 pub use jobs::{
     AsWear, Flags, Job, JobPath, LimitRegion, Limits, OnMachine, Origin, Origins, Provided, RegionPlace, Seconds,
-    Setup, Target, Units,
+    Setup, Target, TargetFaces, Units,
 };
 pub use meshes::{
     Colour, MeshFormat, STEP_CHORD, STEP_SHARE, STEP_THREAD, StepBody, StepFace, StepPart, parse_step, parse_stl,
@@ -71,8 +71,8 @@ pub use meshes::{
 };
 pub use report::{
     Annotation, AnnotationLevel, AxisTravel, CiCase, CiProgram, ComparisonReport, DeviationSummary, DexelCounts,
-    HistogramBar, Measure, MoveSummary, NotLookedAt, OpenPlace, PathSummary, Report, ReportedDexel, ReportedFinding,
-    ReportedRegion, Scope, ScopeLines, SetupSummary, Statement, StatementState, StatementWitness, SurfaceDeviation,
-    ToolSummary, Verdict, WorkSummary, to_junit, to_sarif, write_moves_csv,
+    FaceDeviation, HistogramBar, Measure, MoveSummary, NotLookedAt, OpenPlace, PathSummary, Report, ReportedAlignment,
+    ReportedDexel, ReportedFinding, ReportedRegion, Scope, ScopeLines, SetupSummary, Statement, StatementState,
+    StatementWitness, SurfaceDeviation, ToolSummary, Verdict, WorkSummary, to_junit, to_sarif, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;

@@ -64,7 +64,9 @@ mod warnings;
 
 pub use base::{Content, Folder, JobError, Memory, Sink, folder_name, output_folder, sentences, words};
 pub use describe::{Description, describe, tool_in_words};
-pub use parts::{CompareRequest, ConvertRequest, DeviationLimits, Difference, GridOptions, Pair, Part, WritingOptions};
+pub use parts::{
+    Alignment, CompareRequest, ConvertRequest, DeviationLimits, Difference, GridOptions, Pair, Part, WritingOptions,
+};
 pub use request::{
     DialectOptions, Directions, Input, Judging, Output, ProgramOptions, Request, StockOption, SweepOptions, Task,
     ViewOptions,

@@ -103,8 +103,8 @@ class Camera {
   }
 }
 
-/** Lets a canvas move a camera. `changed` is called after each move; `clicked(x, y)` for a press without a move. */
-function steer(canvas, camera, changed, clicked) {
+/** Lets a canvas move a camera. `changed` is called after each move; `clicked(x, y)` for a press without a move; `hovered(x, y)` where a mouse is without a press, and without a place when it leaves. */
+function steer(canvas, camera, changed, clicked, hovered) {
   const pointers = new Map();
   let moved = 0;
   canvas.addEventListener("pointerdown", (event) => {
@@ -116,7 +116,11 @@ function steer(canvas, camera, changed, clicked) {
   });
   canvas.addEventListener("pointermove", (event) => {
     const before = pointers.get(event.pointerId);
-    if (!before) return;
+    if (!before) {
+      const box = canvas.getBoundingClientRect();
+      if (event.pointerType === "mouse") hovered(event.clientX - box.left, event.clientY - box.top);
+      return;
+    }
     const now = [event.clientX, event.clientY];
     const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
     const tall = canvas.clientHeight;
@@ -142,6 +146,7 @@ function steer(canvas, camera, changed, clicked) {
   };
   canvas.addEventListener("pointerup", lift);
   canvas.addEventListener("pointercancel", lift);
+  for (const end of ["pointerleave", "pointerdown", "wheel"]) canvas.addEventListener(end, () => hovered(), { passive: true });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener(
     "wheel",

@@ -34,10 +34,18 @@ function ramp(colours, t) {
   return mix(colours[k], colours[k + 1], at - k).map(Math.round);
 }
 
-/** The step of a deviation in units of the limits. */
-function deviationStep(deviation, [gouge, excess]) {
+/** More than any share of a limit: there is none. */
+const NOT_MEASURED = 1e9;
+
+/** A deviation in units of the limits. */
+function shareOf(deviation, [gouge, excess]) {
   const limit = deviation < 0 ? gouge : excess;
-  const share = limit > 0 ? deviation / limit : Math.sign(deviation) * 10;
+  return limit > 0 ? Math.min(Math.max(deviation / limit, -1e5), 1e5) : Math.sign(deviation) * 10;
+}
+
+/** The step of a deviation in units of the limits. */
+function deviationStep(deviation, limits) {
+  const share = shareOf(deviation, limits);
   let step = 0;
   while (step < STEPS.length && share > STEPS[step]) step++;
   return step;
@@ -75,26 +83,27 @@ class Colours {
       const moment = layer.moments?.[end & 1][end >> 1] ?? 0;
       return moment && track ? track.at(this.clocks[moment - 1]).move + 1 : moment;
     };
-    if (mode === "deviation")
+    if (mode === "deviation") {
+      // Those of a moment are its own.
+      const known = layer.moments ? layer : source;
+      const place = layer.moments ? (end) => end >> 1 : final;
       return (end) => {
-        const k = end < 0 ? -1 : final(end);
-        const steps = k < 0 ? -32768 : source.deviations[end & 1][k];
-        if (steps === -32768) return UNMEASURED;
-        return DEVIATIONS[deviationStep(steps * source.deviationStep, this.limits)];
+        const k = end < 0 ? -1 : place(end);
+        const steps = k < 0 ? UNKNOWN : known.deviations?.[end & 1][k] ?? UNKNOWN;
+        if (steps === UNKNOWN) return UNMEASURED;
+        return DEVIATIONS[deviationStep(steps * known.deviationStep, this.limits)];
       };
-    if (mode === "tool")
-      return (end) => {
-        const made = maker(end);
-        if (made === 0) return STOCK;
-        return made < 0 ? UNMEASURED : TOOLS[this.toolOf(made - 1) % TOOLS.length];
-      };
-    if (mode === "move")
-      return (end) => {
-        const made = maker(end);
-        if (made === 0) return STOCK;
-        return made < 0 ? UNMEASURED : ramp(COURSE, (made - 1) / Math.max(this.moves - 1, 1));
-      };
-    return (end) => (maker(end) === 0 ? PLAIN : CUT);
+    }
+    return (end) => this.ofMaker(maker(end));
+  }
+
+  /** The colour of what the stock left (0), a move made (1 plus its number), or something made that is not known (negative). */
+  ofMaker(made) {
+    if (this.mode === "plain") return made === 0 ? PLAIN : CUT;
+    if (made === 0 && this.mode !== "deviation") return STOCK;
+    if (made < 0 || this.mode === "deviation") return UNMEASURED;
+    if (this.mode === "tool") return TOOLS[this.toolOf(made - 1) % TOOLS.length];
+    return ramp(COURSE, (made - 1) / Math.max(this.moves - 1, 1));
   }
 
   /** Rows of the legend: colour and words. */

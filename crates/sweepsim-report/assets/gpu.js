@@ -4,12 +4,18 @@ const VERTEX = `#version 300 es
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 colour;
+layout(location = 3) in float share; // of the limit
+layout(location = 4) in float since; // the moment from which a triangle is seen
 uniform mat4 model;
 uniform mat4 camera;
 out vec3 atWorld;
 out vec3 facing;
-out vec3 tint;
+flat out vec3 tint;
+out float deviation;
+flat out float begins;
 void main() {
+  deviation = share;
+  begins = since;
   vec4 world = model * vec4(place, 1.0);
   atWorld = world.xyz;
   facing = mat3(model) * normal;
@@ -21,25 +27,30 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 atWorld;
 in vec3 facing;
-in vec3 tint;
+flat in vec3 tint;
+in float deviation;
+flat in float begins;
+uniform float moment;
+uniform bool banded;     // coloured by the share of the limit, which is known up to 1e6
+uniform float steps[8];
+uniform vec3 bands[9];
 uniform vec4 section;   // material where dot(section.xyz, p) > section.w is cut away
 uniform vec3 eye;
 uniform vec4 flatColour; // of lines and of one-coloured solids: alpha 0 takes the vertex's colour
 uniform vec4 inside;     // of back faces, seen through the section: alpha 0 shades them like the others
 uniform float alpha;
-uniform int pass;        // 0: shaded, 1: unlit, 2: depth for picking
+uniform bool unlit;
 out vec4 pixel;
 void main() {
-  if (dot(section.xyz, atWorld) > section.w) discard;
-  if (pass == 2) {
-    float depth = gl_FragCoord.z * 16777215.0;
-    pixel = vec4(mod(floor(depth / 65536.0), 256.0), mod(floor(depth / 256.0), 256.0), mod(depth, 256.0), 255.0) / 255.0;
-    return;
-  }
+  if (begins > moment || dot(section.xyz, atWorld) > section.w) discard;
   vec3 base = flatColour.a > 0.0 ? flatColour.rgb : tint;
+  if (banded && deviation < 1e6) {
+    base = bands[8];
+    for (int k = 7; k >= 0; k--) if (deviation <= steps[k]) base = bands[k];
+  }
   base = base * base; // close to linear light
   vec3 shade = base;
-  if (pass == 0) {
+  if (!unlit) {
     vec3 n = normalize(facing);
     vec3 view = normalize(eye - atWorld);
     if (gl_FrontFacing || inside.a == 0.0) {
@@ -68,6 +79,7 @@ class Shape {
     this.indices = gl.createBuffer();
     this.count = 0;
     gl.bindVertexArray(this.array);
+    this.extra = [gl.createBuffer(), gl.createBuffer()];
     const layout = [
       [3, gl.FLOAT, false, 12],
       [3, gl.BYTE, true, 4],
@@ -93,11 +105,7 @@ class Shape {
     const { gl } = this;
     this.put(0, quads.places.subarray(0, 12 * quads.count));
     this.put(1, quads.normals.subarray(0, 16 * quads.count));
-    const indices = new Uint32Array(6 * quads.count);
-    for (let q = 0; q < quads.count; q++) {
-      const v = 4 * q;
-      indices.set([v, v + 1, v + 2, v, v + 2, v + 3], 6 * q);
-    }
+    const indices = quads.corners();
     gl.bindVertexArray(this.array);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
     gl.bindVertexArray(null);
@@ -114,12 +122,47 @@ class Shape {
     this.put(2, bytes);
   }
 
+  /** Takes over triangles with their corners; colours and shares of limits follow by `attribute`. */
+  indexed(places, normals, corners) {
+    const { gl } = this;
+    this.put(0, places);
+    this.put(1, normals);
+    gl.bindVertexArray(this.array);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    this.count = corners.length;
+    this.mode = gl.TRIANGLES;
+  }
+
+  /** Other corners of the same places, for `draw` with `coarse`. */
+  coarser(corners) {
+    const { gl } = this;
+    this.coarseIndices = gl.createBuffer();
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.coarseIndices);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+    gl.bindVertexArray(null);
+    this.coarseCount = corners.length;
+  }
+
+  /** A number for each corner: attribute 3 or 4. */
+  attribute(k, numbers) {
+    const { gl } = this;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.extra[k - 3]);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(k);
+    gl.vertexAttribPointer(k, 1, gl.FLOAT, false, 4, 0);
+    gl.bindVertexArray(null);
+  }
+
   /** Takes over single triangles, or lines. */
   plain(places, normals, mode) {
     const { gl } = this;
     const count = places.length / 3;
-    this.put(0, new Float32Array(places));
-    this.put(1, new Int8Array(normals ?? 4 * count));
+    this.put(0, places instanceof Float32Array ? places : new Float32Array(places));
+    this.put(1, normals instanceof Int8Array ? normals : new Int8Array(normals ?? 4 * count));
     this.put(2, new Uint8Array(4 * count));
     gl.bindVertexArray(this.array);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, Uint32Array.from({ length: count }, (_, k) => k), gl.STATIC_DRAW);
@@ -148,14 +191,17 @@ class Gpu {
     gl.linkProgram(this.program);
     if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
     this.at = (name) => gl.getUniformLocation(this.program, name);
-    this.places = Object.fromEntries(["model", "camera", "section", "eye", "flatColour", "inside", "alpha", "pass"].map((n) => [n, this.at(n)]));
+    this.places = Object.fromEntries(["model", "camera", "section", "eye", "flatColour", "inside", "alpha", "unlit", "moment", "banded", "steps", "bands"].map((n) => [n, this.at(n)]));
+    gl.useProgram(this.program);
+    gl.uniform1fv(this.places.steps, STEPS);
+    gl.uniform3fv(this.places.bands, DEVIATIONS.flat().map((c) => c / 255));
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
   /** Begins a picture. `section` is a plane [normal, offset] or null. */
-  begin(width, height, camera, eye, section, pass) {
+  begin(width, height, camera, eye, section) {
     const { gl, places } = this;
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
@@ -164,41 +210,40 @@ class Gpu {
     gl.uniformMatrix4fv(places.camera, false, camera);
     gl.uniform3fv(places.eye, eye);
     gl.uniform4fv(places.inside, [...SECTION.map((c) => c / 255), section ? 1 : 0]);
-    gl.uniform1i(places.pass, pass);
     this.section = section;
-    this.pass = pass;
   }
 
-  /** Draws a shape. Options: model, colour, alpha, unlit, uncut. */
-  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false } = {}) {
+  /** Draws a shape. Options: model, colour, alpha, unlit, uncut; banded: by the share of the limit; moment: what begins to be seen later is left out; behind: a little farther away than it is; coarse: by its coarser corners. */
+  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false, banded = false, moment = 1e9, behind = false, coarse = false } = {}) {
     if (!shape.count) return;
     const { gl, places, section } = this;
     gl.uniformMatrix4fv(places.model, false, model);
     gl.uniform4fv(places.flatColour, colour ? [...colour.map((c) => c / 255), 1] : [0, 0, 0, 0]);
     gl.uniform4fv(places.section, section && !uncut ? [...section[0], section[1]] : [0, 0, 0, 1]);
     gl.uniform1f(places.alpha, alpha);
-    if (this.pass !== 2) gl.uniform1i(places.pass, unlit ? 1 : 0);
-    const clear = alpha < 1 && this.pass !== 2;
+    gl.uniform1i(places.unlit, unlit ? 1 : 0);
+    gl.uniform1i(places.banded, banded ? 1 : 0);
+    gl.uniform1f(places.moment, moment);
+    const clear = alpha < 1;
+    if (behind) {
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.polygonOffset(1, 1);
+    }
     if (clear) {
       gl.enable(gl.BLEND);
       gl.depthMask(false);
       gl.enable(gl.CULL_FACE);
     }
     gl.bindVertexArray(shape.array);
-    gl.drawElements(shape.mode, shape.count, gl.UNSIGNED_INT, 0);
+    if (coarse) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.coarseIndices);
+    gl.drawElements(shape.mode, coarse ? shape.coarseCount : shape.count, gl.UNSIGNED_INT, 0);
+    if (coarse) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.indices);
     gl.bindVertexArray(null);
     if (clear) {
       gl.disable(gl.CULL_FACE);
       gl.depthMask(true);
       gl.disable(gl.BLEND);
     }
-  }
-
-  /** The depth at a pixel from 0 to 1, after a picture of pass 2; null where nothing is. */
-  depthAt(x, y) {
-    const pixel = new Uint8Array(4);
-    this.gl.readPixels(x, y, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, pixel);
-    if (!pixel[3]) return null;
-    return (pixel[0] * 65536 + pixel[1] * 256 + pixel[2]) / 16777215;
+    if (behind) gl.disable(gl.POLYGON_OFFSET_FILL);
   }
 }

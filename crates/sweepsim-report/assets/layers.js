@@ -1,5 +1,10 @@
 // Material on lines: the part at the end, and the workpiece at any moment of the program.
 
+/** The value of a deviation that is not known. */
+const UNKNOWN = -32768;
+/** Numbers of an interval of a course: both ends, the moments that made them, and their deviations. */
+const STRIDE = 6;
+
 /** Lines with their intervals: `first[n]` to `first[n + 1]` are those of line n, heights in steps. */
 class Layer {
   constructor(head, scale, counts, lower, upper) {
@@ -53,18 +58,28 @@ class Course {
       for (let end = line + size; line < end; line++) interval += d["frames.counts"][line];
     }
     this.offsets.push([line, interval]);
+    const { start } = this;
+    const deviation = ["start.lower.deviation", "start.upper.deviation"].map((name) => d[name]);
+    this.begin = Array.from({ length: start.nx * start.ny }, (_, n) => {
+      const own = [];
+      for (let k = start.first[n]; k < start.first[n + 1]; k++) own.push(start.lower[k], start.upper[k], 0, 0, deviation[0]?.[k] ?? UNKNOWN, deviation[1]?.[k] ?? UNKNOWN);
+      return own;
+    });
+    this.reset();
+    this.seek(this.clocks.length);
+    this.last = this.lines;
     this.reset();
   }
 
   reset() {
-    const { start } = this;
     this.moment = 0;
-    this.lines = new Array(start.nx * start.ny);
-    for (let n = 0; n < this.lines.length; n++) {
-      const own = [];
-      for (let k = start.first[n]; k < start.first[n + 1]; k++) own.push(start.lower[k], start.upper[k], 0, 0);
-      this.lines[n] = own;
-    }
+    this.lines = this.begin.slice();
+  }
+
+  /** The lines that change between the moment before and this one, from 1. */
+  changed(moment) {
+    const [from, to] = [this.offsets[moment - 1][0], this.offsets[moment][0]];
+    return this.head.data["frames.line"].subarray(from, to);
   }
 
   /** The number of moments that have passed at a time. */
@@ -91,30 +106,46 @@ class Course {
         for (let n = 0; n < d["frames.counts"][at]; n++, k++) {
           const [lower, upper] = [d["frames.lower"][k], d["frames.upper"][k]];
           const maker = (z, which) => {
-            for (let m = which; m < before.length; m += 4) if (before[m] === z) return before[m + 2];
+            for (let m = which; m < before.length; m += STRIDE) if (before[m] === z) return before[m + 2];
             return this.moment + 1;
           };
-          own.push(lower, upper, maker(lower, 0), maker(upper, 1));
+          own.push(lower, upper, maker(lower, 0), maker(upper, 1), d["frames.lower.deviation"]?.[k] ?? UNKNOWN, d["frames.upper.deviation"]?.[k] ?? UNKNOWN);
         }
         this.lines[d["frames.line"][at]] = own;
       }
     }
   }
 
+  /** Of each line, whether it and its neighbours are as at the end. */
+  settled() {
+    const { nx, ny } = this.start;
+    const same = Uint8Array.from(this.lines, (line, n) => line === this.last[n]);
+    const settled = same.slice();
+    for (let i = 0; i < nx; i++)
+      for (let j = 0; j < ny; j++)
+        for (const [a, b] of [[-1, 0], [1, 0], [0, -1], [0, 1]]) {
+          const inside = i + a >= 0 && j + b >= 0 && i + a < nx && j + b < ny;
+          if (inside && !same[(i + a) * ny + j + b]) settled[i * ny + j] = 0;
+        }
+    return settled;
+  }
+
   /** The workpiece as a layer. Where it is as at the end already, it looks as at the end. */
   layer(final) {
-    const counts = this.lines.map((line) => line.length / 4);
+    const counts = this.lines.map((line) => line.length / STRIDE);
     const total = counts.reduce((a, b) => a + b, 0);
     const [lower, upper] = [new Uint16Array(total), new Uint16Array(total)];
     const layer = new Layer(this.head.course.layer, this.head.height, counts, lower, upper);
     layer.moments = [new Uint32Array(total), new Uint32Array(total)];
+    layer.deviations = [new Int16Array(total), new Int16Array(total)];
+    layer.deviationStep = this.head.deviation;
     const same = final && final.nx === layer.nx && final.ny === layer.ny;
     if (same) layer.asFinal = [new Int32Array(total).fill(-1), new Int32Array(total).fill(-1)];
     let k = 0;
     this.lines.forEach((line, n) => {
-      for (let m = 0; m < line.length; m += 4, k++) {
+      for (let m = 0; m < line.length; m += STRIDE, k++) {
         [lower[k], upper[k]] = [line[m], line[m + 1]];
-        [layer.moments[0][k], layer.moments[1][k]] = [line[m + 2], line[m + 3]];
+        for (const side of [0, 1]) [layer.moments[side][k], layer.deviations[side][k]] = [line[m + 2 + side], line[m + 4 + side]];
         if (!same) continue;
         for (let f = final.first[n]; f < final.first[n + 1]; f++) {
           if (Math.abs(final.lower[f] - lower[k]) <= 1) layer.asFinal[0][k] = f;

@@ -29,9 +29,7 @@ function drawOverlay(viewer, markers, current, choose) {
     }
     pin.addEventListener("click", () => choose(n));
   }
-  const points = viewer.measured.map((p) => viewer.onCanvas(p)).filter(Boolean);
-  if (points.length === 2) mark("line", { class: "span", x1: points[0][0], y1: points[0][1], x2: points[1][0], y2: points[1][1] });
-  for (const [x, y] of points) mark("circle", { class: "point", cx: x, cy: y, r: 4 });
+  drawMeasured(viewer, mark);
   // Axes in the corner.
   const [ox, oy] = [44, height - 44];
   const towards = camera.towards;
@@ -44,5 +42,71 @@ function drawOverlay(viewer, markers, current, choose) {
     mark("line", { class: `axis ${name}`, x1: ox, y1: oy, x2: x, y2: y });
     mark("text", { class: `axis ${name}`, x: ox + 38 * dot(axis, right), y: oy - 38 * dot(axis, up) + 4 }, name.toUpperCase());
   }
-  overlay.replaceChildren(...marks);
+  overlay.querySelector(".marks").replaceChildren(...marks);
+  placeHandle(viewer);
+}
+
+/** The points, lines and the circle that were measured. */
+function drawMeasured(viewer, mark) {
+  const { points, lines, circle } = viewer.measured;
+  const path = (places, attributes) => {
+    const seen = places.map((p) => viewer.onCanvas(p));
+    if (seen.every(Boolean)) mark("path", { ...attributes, d: `M${seen.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}` });
+  };
+  for (const line of lines) path(line, { class: "span" });
+  if (circle) {
+    const { centre, diameter, axis } = circle;
+    const x = unit(cross(Math.abs(axis[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1], axis));
+    const y = cross(axis, x);
+    const at = (k) => add(centre, scaled(add(scaled(x, Math.cos((k * Math.PI) / 32)), scaled(y, Math.sin((k * Math.PI) / 32))), diameter / 2));
+    path(Array.from({ length: 65 }, (_, k) => at(k)), { class: "span" });
+  }
+  for (const at of points.map((p) => viewer.onCanvas(p)).filter(Boolean)) mark("circle", { class: "point", cx: at[0], cy: at[1], r: 4 });
+}
+
+/** Puts the handle of the section where it is seen. */
+function placeHandle(viewer) {
+  const { section, overlay } = viewer;
+  const [a, b] = section.isOn ? [section.handle, section.tip].map((p) => viewer.onCanvas(p)) : [];
+  const group = overlay.querySelector(".handles");
+  group.style.display = a && b ? "" : "none";
+  if (!a || !b) return;
+  const put = (selector, values) => Object.entries(values).forEach(([name, value]) => group.querySelector(selector).setAttribute(name, value.toFixed(1)));
+  put("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1] });
+  put("#section-move", { cx: a[0], cy: a[1] });
+  put("#section-turn", { cx: b[0], cy: b[1] });
+}
+
+/** Lets the handle of the section be held: its disc moves the plane, the tip of its arrow turns it. */
+function holdHandle(viewer, changed) {
+  const { section, canvas } = viewer;
+  const held = (id, drag, key) => {
+    const node = $(id);
+    let before = null;
+    node.addEventListener("pointerdown", (event) => {
+      node.setPointerCapture(event.pointerId);
+      before = [event.clientX, event.clientY];
+      event.preventDefault();
+    });
+    node.addEventListener("pointermove", (event) => {
+      if (!before) return;
+      const box = canvas.getBoundingClientRect();
+      drag(event.clientX - before[0], event.clientY - before[1], event.clientX - box.left, event.clientY - box.top);
+      before = [event.clientX, event.clientY];
+      changed();
+    });
+    for (const end of ["pointerup", "pointercancel"]) node.addEventListener(end, () => (before = null));
+    node.addEventListener("keydown", (event) => {
+      const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (!way) return;
+      key(...way);
+      event.preventDefault();
+      event.stopPropagation();
+      changed();
+    });
+  };
+  const step = (dx, dy) => (section.share = Math.min(Math.max(section.share + 0.01 * (dx + dy), 0), 1));
+  const turn = (Math.PI * 5) / 180;
+  held("section-move", (dx, dy) => section.drag(dx, dy), step);
+  held("section-turn", (dx, dy, x, y) => section.turn(x, y), (dx, dy) => section.tilt(turn * dx, turn * dy));
 }

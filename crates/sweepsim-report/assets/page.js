@@ -1,9 +1,5 @@
 // The page: buttons, sliders, keys and the list of findings.
 
-const $ = (id) => document.getElementById(id);
-const all = (selector) => [...document.querySelectorAll(selector)];
-const short = (x) => (Math.abs(x) < 5e-4 ? 0 : x).toFixed(3).replace("-", "−");
-
 /** A time of the program in words. */
 function clockWords(clock, unitName) {
   if (unitName !== "s") return `${Math.round(clock).toLocaleString("en")} ${unitName}`;
@@ -87,64 +83,12 @@ function withViewer(viewer, markers) {
     viewer.ask();
   });
 
-  // Section.
-  const setSection = () => {
-    const axis = $("section").value;
-    const on = axis !== "";
-    $("section-at").hidden = $("section-flip").hidden = !on;
-    const flipped = $("section-flip").getAttribute("aria-pressed") === "true";
-    viewer.section = on ? { axis: Number(axis), share: $("section-at").value / 1000, flipped } : null;
-    if (on) $("section-at").setAttribute("aria-valuetext", `${short(viewer.plane()[2])} mm`);
-    viewer.ask();
-  };
-  $("section").addEventListener("input", () => {
-    // What is nearer to the viewer goes away.
-    const axis = $("section").value;
-    if (axis !== "") $("section-flip").setAttribute("aria-pressed", String(viewer.camera.towards[axis] < 0));
-    setSection();
-  });
-  $("section-at").addEventListener("input", setSection);
-  $("section-flip").addEventListener("click", () => {
-    const button = $("section-flip");
-    button.setAttribute("aria-pressed", String(button.getAttribute("aria-pressed") !== "true"));
-    setSection();
-  });
-
-  // Measuring, and what is under the pointer.
-  const probe = (text) => {
-    $("probe").hidden = !text;
-    $("probe").textContent = text;
-  };
+  sectionControls(viewer);
   const lineOf = (move) => {
     const line = track?.lines[move];
     return line ? `${head.programs[track.files[move]] ?? "line"}:${line}` : "";
   };
-  const measuring = () => $("measure").getAttribute("aria-pressed") === "true";
-  $("measure").addEventListener("click", () => {
-    const on = !measuring();
-    $("measure").setAttribute("aria-pressed", String(on));
-    viewer.measured = [];
-    probe(on ? "Pick two points" : "");
-    viewer.ask();
-  });
-  viewer.onclick = (x, y) => {
-    const place = viewer.pick(x, y);
-    if (!place) return measuring() || probe("");
-    if (measuring()) {
-      viewer.measured = viewer.measured.length === 1 ? [viewer.measured[0], place] : [place];
-      const [a, b] = viewer.measured;
-      const d = b && sub(b, a);
-      probe(b ? `${short(size(d))} mm  (${d.map(short).join(", ")})` : "Pick the second point");
-    } else {
-      const words = [`${place.map(short).join(", ")}`];
-      const about = viewer.about(place);
-      if (about?.deviation != null) words.push(`deviation ${about.deviation > 0 ? "+" : ""}${short(about.deviation)} mm`);
-      if (about) words.push(about.maker ? `move ${about.maker} ${lineOf(about.maker - 1)}` : "stock");
-      viewer.measured = [place];
-      probe(words.join(" · "));
-    }
-    viewer.ask();
-  };
+  probeControls(viewer, lineOf);
 
   // The course of the program.
   const slider = $("moment");
@@ -263,6 +207,8 @@ async function begin() {
     $("viewer").hidden = false;
     const viewer = new Viewer(head, $("canvas"), $("overlay"));
     withViewer(viewer, JSON.parse($("markers").textContent));
+    // For tests: how long it took.
+    document.documentElement.dataset.opened = Math.round(performance.now());
     document.documentElement.dataset.viewer = "ready";
     $("loading").remove();
   } catch (error) {

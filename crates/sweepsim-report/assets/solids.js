@@ -3,19 +3,43 @@
 /** Triangles with normals for each corner: sharp edges stay sharp. */
 class Triangles {
   constructor() {
-    this.places = [];
-    this.normals = [];
+    this.count = 0;
+    [this.allPlaces, this.allNormals] = [new Float32Array(900), new Int8Array(1200)];
   }
 
-  push(corners, normals) {
-    for (let k = 0; k < 3; k++) {
-      this.places.push(...corners[k]);
-      this.normals.push(...normals[k].map((c) => c * 127), 0);
+  /** Room for so many more corners. */
+  reserve(more) {
+    const need = this.count + more;
+    if (4 * need <= this.allNormals.length) return;
+    const most = Math.max(need, Math.ceil(1.6 * this.count));
+    for (const [name, type, width] of [["allPlaces", Float32Array, 3], ["allNormals", Int8Array, 4]]) {
+      const next = new type(width * most);
+      next.set(this[name]);
+      this[name] = next;
     }
   }
 
-  get count() {
-    return this.places.length / 3;
+  corner(x, y, z, nx, ny, nz) {
+    const n = this.count++;
+    this.allPlaces[3 * n] = x;
+    this.allPlaces[3 * n + 1] = y;
+    this.allPlaces[3 * n + 2] = z;
+    this.allNormals[4 * n] = nx * 127;
+    this.allNormals[4 * n + 1] = ny * 127;
+    this.allNormals[4 * n + 2] = nz * 127;
+  }
+
+  push(corners, normals) {
+    this.reserve(3);
+    for (let k = 0; k < 3; k++) this.corner(...corners[k], ...normals[k]);
+  }
+
+  get places() {
+    return this.allPlaces.subarray(0, 3 * this.count);
+  }
+
+  get normals() {
+    return this.allNormals.subarray(0, 4 * this.count);
   }
 }
 
@@ -52,31 +76,46 @@ function revolved(profile, triangles) {
     }
 }
 
-/** A mesh, smooth but for its sharp edges. */
-function shaded(vertices, corners, triangles) {
-  const flat = [];
-  const around = new Map();
-  const key = (v) => vertices[v].map((c) => c.toFixed(4)).join();
-  const keys = vertices.map((_, v) => key(v));
-  for (let t = 0; t < corners.length; t += 3) {
-    const [a, b, c] = [0, 1, 2].map((k) => vertices[corners[t + k]]);
-    const area = cross(sub(b, a), sub(c, a));
-    flat.push(area);
-    for (let k = 0; k < 3; k++) {
-      const at = keys[corners[t + k]];
-      if (!around.has(at)) around.set(at, []);
-      around.get(at).push(t / 3);
-    }
+/** A mesh, smooth but for its sharp edges: three numbers a place; those with equal `keys` are one. */
+function shaded(places, keys, corners, triangles) {
+  const count = corners.length / 3;
+  const flat = new Float64Array(3 * count);
+  const long = new Float64Array(count);
+  for (let t = 0; t < count; t++) {
+    const [a, b, c] = [3 * corners[3 * t], 3 * corners[3 * t + 1], 3 * corners[3 * t + 2]];
+    const [ux, uy, uz] = [places[b] - places[a], places[b + 1] - places[a + 1], places[b + 2] - places[a + 2]];
+    const [vx, vy, vz] = [places[c] - places[a], places[c + 1] - places[a + 1], places[c + 2] - places[a + 2]];
+    flat[3 * t] = uy * vz - uz * vy;
+    flat[3 * t + 1] = uz * vx - ux * vz;
+    flat[3 * t + 2] = ux * vy - uy * vx;
+    long[t] = Math.hypot(flat[3 * t], flat[3 * t + 1], flat[3 * t + 2]) || 1;
   }
-  const units = flat.map(unit);
-  for (let t = 0; t < corners.length; t += 3) {
-    const own = units[t / 3];
-    const normals = [0, 1, 2].map((k) => {
-      let sum = [0, 0, 0];
-      for (const other of around.get(keys[corners[t + k]])) if (dot(units[other], own) > SHARP) sum = add(sum, flat[other]);
-      return unit(sum);
-    });
-    triangles.push([0, 1, 2].map((k) => vertices[corners[t + k]]), normals);
+  // The triangles around each place.
+  const numbers = new Map();
+  const own = Uint32Array.from(keys, (key) => {
+    if (!numbers.has(key)) numbers.set(key, numbers.size);
+    return numbers.get(key);
+  });
+  const first = new Uint32Array(numbers.size + 1);
+  for (const v of corners) first[own[v] + 1]++;
+  for (let n = 1; n < first.length; n++) first[n] += first[n - 1];
+  const around = new Uint32Array(corners.length);
+  const next = first.slice();
+  for (let k = 0; k < corners.length; k++) around[next[own[corners[k]]]++] = (k / 3) | 0;
+  triangles.reserve(corners.length);
+  for (let k = 0; k < corners.length; k++) {
+    const [v, t] = [corners[k], 3 * ((k / 3) | 0)];
+    let [x, y, z] = [0, 0, 0];
+    for (let m = first[own[v]]; m < first[own[v] + 1]; m++) {
+      const o = 3 * around[m];
+      const cosine = flat[o] * flat[t] + flat[o + 1] * flat[t + 1] + flat[o + 2] * flat[t + 2];
+      if (cosine <= SHARP * long[around[m]] * long[t / 3]) continue;
+      x += flat[o];
+      y += flat[o + 1];
+      z += flat[o + 2];
+    }
+    const size = Math.hypot(x, y, z) || 1;
+    triangles.corner(places[3 * v], places[3 * v + 1], places[3 * v + 2], x / size, y / size, z / size);
   }
 }
 
@@ -86,11 +125,14 @@ function readMeshes(head) {
   const { places } = head.meshes;
   let [vertex, corner] = [0, 0];
   const mesh = ({ vertices, triangles }, into) => {
-    const own = [];
-    for (let v = vertex; v < vertex + vertices; v++) {
-      own.push(["mesh.x", "mesh.y", "mesh.z"].map((name, k) => places[k].from + d[name][v] * places[k].step));
+    const own = new Float32Array(3 * vertices);
+    const keys = new Float64Array(vertices);
+    const steps = ["mesh.x", "mesh.y", "mesh.z"].map((name) => d[name]);
+    for (let v = 0; v < vertices; v++) {
+      for (let k = 0; k < 3; k++) own[3 * v + k] = places[k].from + steps[k][vertex + v] * places[k].step;
+      keys[v] = (steps[0][vertex + v] * 65536 + steps[1][vertex + v]) * 65536 + steps[2][vertex + v];
     }
-    shaded(own, d["mesh.corners"].subarray(corner, corner + 3 * triangles), into);
+    shaded(own, keys, d["mesh.corners"].subarray(corner, corner + 3 * triangles), into);
     vertex += vertices;
     corner += 3 * triangles;
     return into;

@@ -1,5 +1,9 @@
 // The scene: what is drawn, how it is coloured, and what is under the pointer.
 
+/** A picture that takes longer, in milliseconds, is slow; and how long the view rests before it is drawn in full. */
+const LONG = 60;
+const REST = 180;
+
 class Viewer {
   constructor(head, canvas, overlay) {
     this.head = head;
@@ -12,7 +16,9 @@ class Viewer {
     this.course = head.course ? new Course(head) : null;
     this.track = head.track ? new Track(head) : null;
     this.meshes = readMeshes(head);
-    this.shapes = { part: new Shape(gl), path: new Shape(gl), rapid: new Shape(gl) };
+    this.sharp = head.surface ? new Sharp(head) : null;
+    this.shapes = { part: new Shape(gl), sharp: new Shape(gl), path: new Shape(gl), rapid: new Shape(gl) };
+    if (this.sharp) this.shapes.sharp.indexed(this.sharp.places, this.sharp.normals, this.sharp.corners);
     for (const [name, triangles] of Object.entries(this.meshes.solids)) this.addShape(name, triangles);
     this.tools = this.meshes.tools.map((tool) => [tool.cutter, tool.bodies].map((part) => {
       const shape = new Shape(gl);
@@ -28,9 +34,11 @@ class Viewer {
     const meets = this.machine?.contacts.length > 0;
     this.shown = { target: false, fixture: true, stock: false, tool: true, path: false, machine: meets, still: false };
     this.clock = this.track?.end ?? 0;
-    this.section = null;
-    this.measured = [];
-    this.marked = null;
+    this.section = new Section(this);
+    /** What is marked in the picture: points, lines between two of them, and a circle. */
+    this.measured = { points: [], lines: [], circle: null };
+    /** What can be picked, by name; made when it is needed. */
+    this.solids = {};
     if (this.track) this.drawPath();
     const [low, high] = this.extent();
     this.camera = new Camera(low, high, canvas.clientWidth / canvas.clientHeight || 1);
@@ -38,7 +46,8 @@ class Viewer {
     this.rebuilt = -1;
     this.mode = "plain";
     const asked = () => this.ask();
-    steer(canvas, this.camera, asked, (x, y) => this.onclick?.(x, y));
+    const moved = () => this.move();
+    steer(canvas, this.camera, moved, (x, y) => this.onclick?.(x, y), (x, y) => this.onhover?.(x, y));
     new ResizeObserver(asked).observe(canvas);
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   }
@@ -73,8 +82,9 @@ class Viewer {
         const y = layer.min[1] + (i & 2 ? layer.ny * layer.spacing[1] : 0);
         take(transformed(this.frame, [x, y, layer.height(i & 4 ? top : bottom)]).slice(0, 3));
       }
-    const { places } = this.meshes.solids.target;
-    for (let k = 0; k < places.length; k += 3) take([places[k], places[k + 1], places[k + 2]]);
+    for (const places of [this.meshes.solids.target.places, this.sharp?.places ?? []])
+      for (let k = 0; k < places.length; k += 3)
+        for (let c = 0; c < 3; c++) [low[c], high[c]] = [Math.min(low[c], places[k + c]), Math.max(high[c], places[k + c])];
     return low[0] <= high[0] ? [low, high] : [[-1, -1, -1], [1, 1, 1]];
   }
 
@@ -105,26 +115,63 @@ class Viewer {
     return Math.max(number, 0);
   }
 
+  /** The part as it is to be drawn now: its sharp surface as far as it is as at the end, the rest from lines. */
   rebuild() {
-    const { moment } = this;
-    if (this.rebuilt === `${moment} ${this.mode}`) return;
-    this.rebuilt = `${moment} ${this.mode}`;
+    const { moment, sharp, shapes, mode } = this;
+    if (this.rebuilt === `${moment} ${mode}`) return;
+    this.rebuilt = `${moment} ${mode}`;
+    const begin = performance.now();
+    const colours = new Colours(this.head, mode);
+    colours.clocks = this.course?.clocks ?? [];
     let layer = this.final;
     if (moment >= 0) {
+      if (sharp && !this.followed) {
+        sharp.follow(this.course, this.frame);
+        shapes.sharp.attribute(4, sharp.since);
+        this.followed = true;
+      }
       this.course.seek(moment);
       layer = this.course.layer(this.final);
+      if (sharp) layer.settled = this.course.settled();
     }
-    const colours = new Colours(this.head, this.mode);
-    colours.clocks = this.course?.clocks ?? [];
-    const colour = colours.of(layer, this.track);
-    layer.look = (end) => colour(end).reduce((all, c) => all * 256 + c, 0);
-    const begin = performance.now();
-    const quads = surfaceOf(layer);
+    if (sharp && this.tinted !== mode) {
+      this.tinted = mode;
+      shapes.sharp.put(2, sharp.tints((made) => colours.ofMaker(made)));
+      if (mode === "deviation") shapes.sharp.attribute(3, sharp.shares(colours.limits));
+    }
+    const data = { moment, mode, triangles: sharp?.count ?? 0, quads: 0 };
     this.layer = layer;
-    this.shapes.part.quads(quads);
-    this.shapes.part.colours(quads, colour);
-    const milliseconds = Math.round(performance.now() - begin);
-    Object.assign(this.canvas.dataset, { quads: quads.count, moment, mode: this.mode, milliseconds });
+    this.quads = null;
+    delete this.solids.part;
+    if (!sharp || moment >= 0) {
+      const colour = colours.of(layer, this.track);
+      layer.look = (end) => colour(end).reduce((all, c) => all * 256 + c, 0);
+      this.quads = surfaceOf(layer);
+      data.quads = this.quads.count;
+      shapes.part.quads(this.quads);
+      shapes.part.colours(this.quads, colour);
+    }
+    data.milliseconds = Math.round(performance.now() - begin);
+    Object.assign(this.canvas.dataset, data);
+  }
+
+  /** The view moves: where pictures take long, they are coarse until it rests. */
+  move() {
+    clearTimeout(this.resting);
+    this.moving = true;
+    this.resting = setTimeout(() => {
+      this.moving = false;
+      this.before = null;
+      this.ask();
+    }, REST);
+    this.ask();
+  }
+
+  /** Whether the surface is to be drawn by fewer triangles now. */
+  get isCoarse() {
+    if (!this.moving || !this.slow || this.sharp.count < LARGE) return false;
+    if (!this.shapes.sharp.coarseCount) this.shapes.sharp.coarser(this.sharp.coarse());
+    return true;
   }
 
   ask() {
@@ -132,6 +179,8 @@ class Viewer {
     this.asked = true;
     requestAnimationFrame((now) => {
       this.asked = false;
+      if (this.moving && this.before && now - this.before > LONG) this.slow = true;
+      this.before = now;
       if (this.camera.step(now)) this.ask();
       // For tests: whether the picture is still moving.
       if (this.camera.flight) this.canvas.dataset.flying = "1";
@@ -140,34 +189,22 @@ class Viewer {
     });
   }
 
-  /** The plane beyond which all is cut away. */
-  plane() {
-    if (!this.section) return null;
-    const { axis, share, flipped } = this.section;
-    const normal = [0, 0, 0];
-    normal[axis] = flipped ? -1 : 1;
-    const at = this.camera.low[axis] + (this.camera.high[axis] - this.camera.low[axis]) * share;
-    return [normal, normal[axis] * at, at];
-  }
-
-  draw(pass = 0) {
-    const { canvas, gpu, shapes, shown, camera } = this;
+  draw() {
+    const { canvas, gpu, shapes, shown, camera, moment } = this;
     if (!canvas.clientWidth) return;
-    if (pass === 0) this.rebuild();
+    this.rebuild();
     const ratio = Math.min(devicePixelRatio || 1, 2);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((c) => Math.round(c * ratio));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     const view = product(camera.matrix(width / height), this.hold);
     this.view = view;
-    gpu.begin(width, height, view, transformed(inverted(this.hold), camera.eye).slice(0, 3), this.plane(), pass);
-    gpu.draw(shapes.part, { model: this.frame });
-    if (shown.fixture) {
-      gpu.draw(shapes.fixture, { colour: FIXTURE });
-      const own = shapes[`fixture ${this.setup}`];
-      if (own) gpu.draw(own, { colour: FIXTURE });
-    }
+    gpu.begin(width, height, view, transformed(inverted(this.hold), camera.eye).slice(0, 3), this.section.plane);
+    const coarse = this.sharp !== null && this.isCoarse;
+    canvas.dataset.drawn = coarse ? shapes.sharp.coarseCount / 3 : this.sharp?.count ?? 0;
+    if (this.quads) gpu.draw(shapes.part, { model: this.frame, behind: this.sharp !== null });
+    if (this.sharp) gpu.draw(shapes.sharp, { banded: this.mode === "deviation", moment: moment < 0 ? 1e9 : moment, coarse });
+    for (const name of this.fixtures()) gpu.draw(shapes[name], { colour: FIXTURE });
     canvas.dataset.setup = this.setup;
-    if (pass === 2) return;
     if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
     if (shown.machine && this.machine) this.drawMachine();
     if (shown.path) {
@@ -178,6 +215,11 @@ class Viewer {
     if (shown.target) gpu.draw(shapes.target, { colour: TARGET, alpha: 0.45 });
     canvas.dataset.camera = String(camera);
     this.ondraw?.();
+  }
+
+  /** The fixtures that are shown now. */
+  fixtures() {
+    return this.shown.fixture ? ["fixture", `fixture ${this.setup}`].filter((name) => this.shapes[name]) : [];
   }
 
   drawTool() {
@@ -219,57 +261,103 @@ class Viewer {
     return [(0.5 + (0.5 * x) / w) * this.canvas.clientWidth, (0.5 - (0.5 * y) / w) * this.canvas.clientHeight, z / w];
   }
 
-  /** The point of the part or a fixture under a pixel of the canvas, or null. */
-  pick(x, y) {
+  /** The ray of the world behind a pixel of the canvas. */
+  ray(x, y) {
     const { canvas, camera } = this;
-    this.draw(2);
-    const ratio = canvas.width / canvas.clientWidth;
-    const depth = this.gpu.depthAt(Math.floor(x * ratio), canvas.height - 1 - Math.floor(y * ratio));
-    this.draw();
-    if (depth === null || depth >= 1) return null;
-    // The point of the ray whose depth is this.
-    const back = sub(camera.centre, camera.eye);
-    const forward = unit(back);
+    const forward = scaled(camera.towards, -1);
     const right = unit(cross(forward, [0, 0, 1]));
     const up = cross(right, forward);
-    const aspect = canvas.clientWidth / canvas.clientHeight;
-    const m = perspectiveOf(camera, aspect);
+    const [wide, tall] = halves(canvas.clientWidth / canvas.clientHeight);
     const [u, v] = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
-    const far = m[14] / (2 * depth - 1 + m[10]);
-    const place = add(camera.eye, scaled(forward, far));
-    const seen = add(place, add(scaled(right, (u * far) / m[0]), scaled(up, (v * far) / m[5])));
-    return transformed(inverted(this.hold), seen).slice(0, 3);
+    const seen = unit(add(forward, add(scaled(right, u * wide), scaled(up, v * tall))));
+    const back = inverted(this.hold);
+    const origin = transformed(back, camera.eye).slice(0, 3);
+    return { origin, towards: sub(transformed(back, add(camera.eye, seen)).slice(0, 3), origin) };
   }
 
-  /** What is known of the surface near a point. */
-  about(p) {
-    const { layer } = this;
-    const q = sub(p, this.head.frame[0]);
-    const local = [1, 2, 3].map((k) => dot(q, this.head.frame[k]));
-    const cell = layer?.nearest(local);
-    if (!cell) return null;
+  /** The solids that can be picked now, each with what tells whether a triangle of it is seen. */
+  pickable() {
+    const { solids, sharp, moment } = this;
+    const all = [];
+    if (sharp) {
+      solids.sharp ??= new Solid(sharp.places, sharp.corners);
+      all.push([solids.sharp, (triangle) => sharp.isSeen(triangle, moment)]);
+    }
+    if (this.quads) {
+      solids.part ??= new Solid(this.quads.places, this.quads.corners(), this.frame);
+      all.push([solids.part, null]);
+    }
+    for (const name of this.fixtures()) {
+      solids[name] ??= new Solid(this.meshes.solids[name].places, null);
+      all.push([solids[name], null]);
+    }
+    return all;
+  }
+
+  /** The first of what is seen that a ray meets between two distances. */
+  cast(origin, towards, range) {
+    let [best, end] = [null, range[1]];
+    for (const [solid, accept] of this.pickable()) {
+      const hit = solid.first(origin, towards, [range[0], end], accept);
+      if (hit) [best, end] = [hit, hit.far];
+    }
+    if (!best) return null;
+    const place = add(origin, scaled(towards, best.far));
+    return { ...best, place, round: best.solid === this.solids.sharp ? this.sharp.rounded(best, place) : place };
+  }
+
+  /** What is under a pixel of the canvas: place, normal, and the triangle, or null for the face of a section. */
+  pick(x, y) {
+    this.rebuild();
+    const { origin, towards } = this.ray(x, y);
+    const { plane } = this.section;
+    const range = left(origin, towards, plane);
+    const hit = this.cast(origin, towards, range);
+    if (!hit || !plane || dot(hit.normal, towards) < 0 || range[0] <= 0) return hit;
+    // Inside of the material where the section begins.
+    const place = add(origin, scaled(towards, range[0]));
+    return { far: range[0], place, round: place, normal: plane[0], triangle: null };
+  }
+
+  /** The other side of the material below a point: place and distance, or null. */
+  through({ place, normal }) {
+    const inwards = scaled(normal, -1);
+    const hit = this.cast(place, inwards, [1e-4 * this.camera.reach, Infinity]);
+    return hit && { place: hit.place, far: hit.far };
+  }
+
+  /** The end of an interval that a face picked among the lines belongs to, as flat ones are joined; null on walls. */
+  endAt({ place, normal }) {
+    const { layer, frame } = this;
+    const back = inverted(frame);
+    const up = sub(transformed(back, add(place, normal)), transformed(back, place))[2];
+    const local = transformed(back, place);
+    const cell = layer.nearest(local);
+    if (Math.abs(up) < 0.1 || !cell) return null;
+    const side = up > 0 ? 1 : 0;
+    let [best, nearest] = [null, Infinity];
     const n = cell[0] * layer.ny + cell[1];
-    let best = null;
-    for (let k = layer.first[n]; k < layer.first[n + 1]; k++)
-      [layer.lower[k], layer.upper[k]].forEach((steps, side) => {
-        const far = Math.abs(layer.height(steps) - local[2]);
-        if (!best || far < best.far) best = { far, k, side };
-      });
-    if (!best || best.far > 2 * Math.max(...layer.spacing)) return null;
-    const k = layer.final ? layer.asFinal[best.side][best.k] : layer.moments ? -1 : best.k;
-    if (k < 0) return null;
-    const source = layer.final ?? layer;
-    const steps = source.deviations?.[best.side][k] ?? -32768;
-    return { maker: source.makers[best.side][k], deviation: steps === -32768 ? null : steps * source.deviationStep };
+    for (let k = layer.first[n]; k < layer.first[n + 1]; k++) {
+      const far = Math.abs(layer.height((side ? layer.upper : layer.lower)[k]) - local[2]);
+      if (far < nearest) [nearest, best] = [far, 2 * k + side];
+    }
+    return best;
   }
-}
 
-/** The projection alone, as the camera's matrix has it. */
-function perspectiveOf(camera, aspect) {
-  const whole = camera.matrix(aspect);
-  const view = lookAt(camera.eye, camera.centre, [0, 0, 1]);
-  // The view is a rotation and a shift, so its inverse is simple.
-  const [a, b, c] = [0, 1, 2].map((i) => [view[i], view[4 + i], view[8 + i]]);
-  const inverse = [...a, 0, ...b, 0, ...c, 0, ...camera.eye, 1];
-  return product(whole, inverse);
+  /** What is known of the surface where it was picked: the deviation, and 0 for the stock or 1 plus the number of the move; each null if it is not known. */
+  about(hit) {
+    const { solid, triangle, u, v } = hit;
+    const { sharp, solids, quads, layer } = this;
+    if (triangle === null) return null;
+    if (solid === solids.sharp) return { maker: sharp.maker(triangle), deviation: sharp.deviation(triangle, u, v) };
+    if (solid !== solids.part) return null;
+    const end = this.endAt(hit) ?? quads.ends[triangle >> 1];
+    if (end < 0) return { maker: end === -1 ? 0 : null, deviation: null };
+    const [k, side] = [end >> 1, end & 1];
+    const steps = layer.deviations?.[side][k] ?? UNKNOWN;
+    const deviation = steps === UNKNOWN ? null : steps * layer.deviationStep;
+    if (!layer.moments) return { maker: layer.makers[side][k], deviation };
+    const made = layer.moments[side][k];
+    return { maker: made === 0 ? 0 : this.track.at(this.course.clocks[made - 1]).move + 1, deviation };
+  }
 }

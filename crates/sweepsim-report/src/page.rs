@@ -4,7 +4,7 @@ use crate::encode::{Embedded, embed};
 use crate::findings::{self, Finding};
 use crate::html::{escape, json};
 use crate::plots::{self, Histogram, Plot};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 use crate::tables::{self, Fact, Table};
 use crate::viewer;
 use base64::Engine as _;
@@ -18,18 +18,23 @@ const STYLES: [&str; 3] = [
 ];
 
 /// The scripts share one function: each uses what those before it declare.
-const SCRIPTS: [&str; 12] = [
+const SCRIPTS: [&str; 17] = [
     include_str!("../assets/data.js"),
     include_str!("../assets/vectors.js"),
     include_str!("../assets/layers.js"),
     include_str!("../assets/surface.js"),
+    include_str!("../assets/sharp.js"),
+    include_str!("../assets/rays.js"),
     include_str!("../assets/solids.js"),
     include_str!("../assets/machine.js"),
     include_str!("../assets/colours.js"),
     include_str!("../assets/gpu.js"),
     include_str!("../assets/camera.js"),
+    include_str!("../assets/section.js"),
+    include_str!("../assets/measure.js"),
     include_str!("../assets/viewer.js"),
     include_str!("../assets/overlay.js"),
+    include_str!("../assets/controls.js"),
     include_str!("../assets/page.js"),
 ];
 
@@ -174,7 +179,7 @@ impl Page {
         self.viewer(&mut html, embedded.as_ref());
         html.push_str("</div>\n");
         if let Some(embedded) = &embedded {
-            let accuracy = viewer::accuracy(embedded.step, &embedded.left_out);
+            let accuracy = viewer::accuracy(embedded.step, self.surface(embedded), &embedded.left_out);
             after = after.replacen(ACCURACY, &accuracy, 1);
         }
         html.push_str(&after.replacen(ACCURACY, "", 1));
@@ -194,6 +199,12 @@ impl Page {
         }
         html.push_str(&script);
         html
+    }
+
+    /// The surface of the part, if it is embedded.
+    fn surface(&self, embedded: &Embedded) -> Option<&Surface> {
+        let surface = self.scene.as_ref().and_then(|scene| scene.surface.as_ref());
+        surface.filter(|_| embedded.has_surface)
     }
 
     /// Verdict and findings.

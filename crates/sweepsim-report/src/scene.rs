@@ -108,6 +108,8 @@ pub struct KeyFrame {
     pub(crate) lines: Vec<u32>,
     pub(crate) counts: Vec<u16>,
     pub(crate) intervals: Vec<[f64; 2]>,
+    /// The deviations of both ends of each interval; NaN if they are not known.
+    pub(crate) deviations: Vec<[f32; 2]>,
 }
 
 impl KeyFrame {
@@ -123,11 +125,19 @@ impl KeyFrame {
     /// Sets the material of a line from now on: its number (column times rows, plus row), and its intervals from the
     /// lowest up.
     pub fn push(&mut self, line: u32, intervals: impl IntoIterator<Item = [f64; 2]>) {
+        self.push_measured(line, intervals.into_iter().map(|ends| (ends, [f32::NAN; 2])));
+    }
+
+    /// The same with the deviations of both ends: their distances from the target, NaN if they are not known.
+    pub fn push_measured(&mut self, line: u32, intervals: impl IntoIterator<Item = ([f64; 2], [f32; 2])>) {
         let before = self.intervals.len();
         let finite = intervals
             .into_iter()
-            .filter(|[lower, upper]| lower.is_finite() && upper.is_finite());
-        self.intervals.extend(finite.take(usize::from(u16::MAX)));
+            .filter(|([lower, upper], _)| lower.is_finite() && upper.is_finite());
+        for (ends, deviations) in finite.take(usize::from(u16::MAX)) {
+            self.intervals.push(ends);
+            self.deviations.push(deviations);
+        }
         self.lines.push(line);
         self.counts.push((self.intervals.len() - before) as u16);
     }
@@ -146,6 +156,26 @@ pub struct Course {
     pub start: DexelLayer,
     /// What changed until each moment, in order.
     pub frames: Vec<KeyFrame>,
+}
+
+/// The part's surface as triangles, sharp at edges: what is shown where it is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Corners, in the world. On sharp edges each side has its own.
+    pub vertices: Vec<[f64; 3]>,
+    /// The unit normal at each corner.
+    pub normals: Vec<[f32; 3]>,
+    /// The signed distance of each corner from the target along its normal, negative where too much was removed; NaN
+    /// if it is not known. Empty without a target.
+    pub deviations: Vec<f32>,
+    /// Of each triangle, 0 for the stock, otherwise 1 plus the number of the move that made the surface there.
+    pub makers: Vec<u32>,
+    /// Numbers of corners, counter-clockwise seen from outside; triangles without a corner are left out.
+    pub triangles: Vec<[u32; 3]>,
+    /// The number of triangles of the surface, which may be more.
+    pub whole: usize,
+    /// How far corners of the whole surface are from these triangles at most.
+    pub farthest: f64,
 }
 
 /// Where the tool is at a time.
@@ -286,6 +316,8 @@ pub struct ProgramText {
 pub struct Scene {
     /// The part at the end of the program.
     pub part: DexelLayer,
+    /// Its surface, where more is known of it than the lines tell.
+    pub surface: Option<Surface>,
     /// The origin and the axes of the frame of all lines, in the world.
     pub frame: [[f64; 3]; 4],
     /// The limits of deviations: for gouges and for excess.
@@ -314,6 +346,7 @@ impl Scene {
     pub fn new(part: DexelLayer) -> Self {
         Self {
             part,
+            surface: None,
             frame: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             limits: None,
             course: None,

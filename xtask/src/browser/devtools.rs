@@ -203,6 +203,12 @@ impl Browser {
         Ok(())
     }
 
+    /// Moves the mouse without a press.
+    pub fn hover(&mut self, [x, y]: [f64; 2]) -> Result<(), String> {
+        let event = json!({"type": "mouseMoved", "x": x, "y": y, "button": "none", "buttons": 0});
+        self.call("Input.dispatchMouseEvent", event).map(drop)
+    }
+
     /// Puts fingers down, moves them step by step, and lifts them: each step has a place for each finger.
     pub fn touch(&mut self, steps: &[Vec<[f64; 2]>]) -> Result<(), String> {
         for (n, fingers) in steps.iter().enumerate() {

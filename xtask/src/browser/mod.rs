@@ -2,7 +2,9 @@
 //! is done here by its buttons, keys and sliders, and must show; the screenshots of the docs are taken on the way.
 
 mod devtools;
+mod large;
 mod walk;
+mod walls;
 
 use crate::workspace;
 use devtools::Browser;
@@ -32,7 +34,9 @@ pub fn run(screenshots: bool) -> Result<bool, String> {
     let folder = std::path::absolute(target.join("browser")).map_err(|error| error.to_string())?;
     let begin = Instant::now();
     let report = report(&folder)?;
-    println!("report       {:.1} s", begin.elapsed().as_secs_f64());
+    planted(&folder)?;
+    large::write(&folder)?;
+    println!("reports      {:.1} s", begin.elapsed().as_secs_f64());
     let docs = screenshots.then(|| workspace::root().join("docs/pictures"));
     let mut good = true;
     for (name, size, flags, walk) in walk::all() {
@@ -54,20 +58,23 @@ pub fn run(screenshots: bool) -> Result<bool, String> {
     Ok(good)
 }
 
-/// The report of the faulty bracket, made by the command as users run it.
-fn report(folder: &Path) -> Result<PathBuf, String> {
+/// A command of sweepsim as users run it.
+fn sweepsim() -> Command {
     // Beside this program, if it was built with the workspace; otherwise cargo builds it.
     let beside = std::env::current_exe().ok().map(|own| own.with_file_name("sweepsim"));
-    let mut command = match beside.filter(|file| file.is_file()) {
+    match beside.filter(|file| file.is_file()) {
         Some(file) => Command::new(file),
         None => {
             let mut cargo = Command::new(env!("CARGO"));
             cargo.args(["run", "--quiet", "--package", "sweepsim-cli", "--"]);
             cargo
         }
-    };
-    let job = workspace::fixtures().join("verify/bracket-faulty.ron");
-    let status = command
+    }
+}
+
+/// The report of a faulty job, in a folder.
+fn verified(job: &Path, folder: &Path) -> Result<PathBuf, String> {
+    let status = sweepsim()
         .arg("verify")
         .arg(job)
         .args(["--quiet", "--only", "report,picture", "--size", "900x600", "--out"])
@@ -76,8 +83,28 @@ fn report(folder: &Path) -> Result<PathBuf, String> {
         .map_err(|error| format!("sweepsim: {error}"))?;
     if status.code() != Some(1) {
         return Err(format!(
-            "the faulty bracket must fail with 1, but sweepsim ended with {status}"
+            "{} must fail with 1, but sweepsim ended with {status}",
+            job.display()
         ));
     }
     Ok(folder.join("report.html"))
+}
+
+/// The report of the faulty bracket.
+fn report(folder: &Path) -> Result<PathBuf, String> {
+    verified(&workspace::fixtures().join("verify/bracket-faulty.ron"), folder)
+}
+
+/// The report of a part with known faults.
+fn planted(folder: &Path) -> Result<PathBuf, String> {
+    let folder = folder.join("walls");
+    let write = |name: &str, text: &str| {
+        let file = folder.join(name);
+        std::fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+    };
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    write("walls.nc", walls::PROGRAM)?;
+    write("walls.stl", &walls::target())?;
+    write("walls.ron", walls::JOB)?;
+    verified(&folder.join("walls.ron"), &folder)
 }

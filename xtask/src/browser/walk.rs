@@ -1,6 +1,7 @@
 //! What is tried on the page.
 
 use super::devtools::Browser;
+use super::walls;
 use base64::Engine as _;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -12,11 +13,14 @@ const DESKTOP: [u32; 2] = [1280, 800];
 const PHONE: [u32; 2] = [390, 844];
 
 /// Name, size of the page, flags of the browser, and what to do.
-pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 5] {
+pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 8] {
     [
         ("mouse", DESKTOP, &[], mouse),
         ("keyboard", DESKTOP, &[], keyboard),
         ("phone", PHONE, &[], phone),
+        ("walls", DESKTOP, &[], walls::walls),
+        ("course", DESKTOP, &[], walls::course),
+        ("large", DESKTOP, &[], walls::large),
         ("paper", DESKTOP, &[], paper),
         (
             "no WebGL",
@@ -46,7 +50,7 @@ const PIXELS: &str = "(async () => {
     return [drawn / (data.length / 4), hash, colours.size];
 })()";
 
-fn pixels(browser: &mut Browser) -> Result<Value, String> {
+pub(super) fn pixels(browser: &mut Browser) -> Result<Value, String> {
     browser.value(PIXELS)
 }
 
@@ -57,7 +61,7 @@ fn camera(browser: &mut Browser) -> Result<Value, String> {
 }
 
 /// The middle of an element, in the window.
-fn middle(browser: &mut Browser, selector: &str) -> Result<[f64; 2], String> {
+pub(super) fn middle(browser: &mut Browser, selector: &str) -> Result<[f64; 2], String> {
     let quoted = json!(selector);
     let place = browser.value(&format!(
         "(() => {{ const e = document.querySelector({quoted}); e.scrollIntoView({{ block: 'nearest' }});
@@ -69,13 +73,13 @@ fn middle(browser: &mut Browser, selector: &str) -> Result<[f64; 2], String> {
     }
 }
 
-fn click(browser: &mut Browser, selector: &str) -> Result<(), String> {
+pub(super) fn click(browser: &mut Browser, selector: &str) -> Result<(), String> {
     let place = middle(browser, selector)?;
     browser.drag(&[place])
 }
 
 /// Sets a slider or a list as a person would.
-fn choose(browser: &mut Browser, selector: &str, value: &str) -> Result<(), String> {
+pub(super) fn choose(browser: &mut Browser, selector: &str, value: &str) -> Result<(), String> {
     let (selector, value) = (json!(selector), json!(value));
     browser
         .value(&format!(
@@ -84,12 +88,12 @@ fn choose(browser: &mut Browser, selector: &str, value: &str) -> Result<(), Stri
         .map(drop)
 }
 
-fn expect(good: bool, what: &str) -> Result<(), String> {
+pub(super) fn expect(good: bool, what: &str) -> Result<(), String> {
     if good { Ok(()) } else { Err(what.to_owned()) }
 }
 
 /// No errors, and no requests but for the page and what it holds itself.
-fn quiet(browser: &mut Browser) -> Result<(), String> {
+pub(super) fn quiet(browser: &mut Browser) -> Result<(), String> {
     expect(
         browser.said.is_empty(),
         &format!("the page complains: {}", browser.said.join("; ")),
@@ -101,7 +105,7 @@ fn quiet(browser: &mut Browser) -> Result<(), String> {
     expect(files == 1, "the page asks for other files")
 }
 
-fn save(browser: &mut Browser, docs: Option<&Path>, name: &str) -> Result<(), String> {
+pub(super) fn save(browser: &mut Browser, docs: Option<&Path>, name: &str) -> Result<(), String> {
     let Some(docs) = docs else { return Ok(()) };
     let picture = browser.screenshot()?;
     let bytes = base64::engine::general_purpose::STANDARD

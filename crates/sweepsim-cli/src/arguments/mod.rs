@@ -15,9 +15,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 pub(crate) use judging::JudgeOptions;
 pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
 use std::path::PathBuf;
+use std::str::FromStr;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
-use sweepsim_job::DeviationLimits;
+use sweepsim_job::{Alignment, DeviationLimits};
 use sweepsim_picture::{CuttingPlane, View};
 use values::{area, camera, cells, limits, parsed, section, size, tile, tolerance};
 pub(crate) use values::{plane, stock};
@@ -287,6 +288,11 @@ pub(crate) struct CompareOptions {
     /// count, by region if it has regions [default: 0.1 each].
     #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits)]
     pub limits: Option<DeviationLimits>,
+    /// Lays the part onto the target first, by a rigid motion that is said with what is left: best (least squares of
+    /// distances), features (of planes and cylinders of a STEP target), or datum=FACE,FACE,FACE (three-two-one by plane
+    /// faces of a STEP target).
+    #[arg(long, value_name = "HOW", value_parser = Alignment::from_str)]
+    pub align: Option<Alignment>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub range: Option<f64>,

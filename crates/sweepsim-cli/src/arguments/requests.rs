@@ -42,6 +42,7 @@ impl CompareOptions {
         let mut request = CompareRequest::new(&self.part, &self.target);
         request.tolerance = self.tolerance;
         request.limits.clone_from(&self.limits);
+        request.align.clone_from(&self.align);
         request.range = self.range;
         request.grid = self.grid.given();
         request.view = self.view.given();

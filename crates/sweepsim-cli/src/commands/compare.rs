@@ -1,8 +1,9 @@
 //! `compare`: reports how a part differs from its target.
 
+use super::faces::{by_face, length};
 use crate::arguments::CompareOptions;
 use crate::session::{Failure, Lines, Outputs, Progress, print};
-use sweepsim_formats::{ComparisonReport, DeviationSummary, ReportedRegion};
+use sweepsim_formats::{ComparisonReport, DeviationSummary, ReportedAlignment, ReportedRegion};
 use sweepsim_job::{output_folder, words};
 
 /// The most regions that are named one by one.
@@ -43,6 +44,9 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
         "missing",
         &format!("{}, {}", volume(report.missing_volume), words_of(&report.gouge)),
     );
+    if let Some(alignment) = &report.alignment {
+        aligned(&mut line, alignment);
+    }
     let [gouge, excess] = report.limits.map(length);
     let count = words::counted(report.regions.len() as u64, "region");
     line(
@@ -76,6 +80,7 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
             "[a, b] is between a and b: dexels along one axis do not tell where a wall is between two of their lines",
         );
     }
+    by_face(&report.faces, "comparison.json", &mut line);
     for warning in &report.warnings {
         line("warning", warning);
     }
@@ -89,12 +94,41 @@ fn region_in_words(region: &ReportedRegion) -> String {
         .region
         .as_ref()
         .map_or(String::new(), |name| format!(", in region {name}"));
-    format!("{depth} mm at {}, {area} mm²{of}", words::point(region.place))
+    let on = region
+        .face
+        .as_ref()
+        .map_or(String::new(), |face| format!(" on face {face}"));
+    format!("{depth} mm at {}{on}, {area} mm²{of}", words::point(region.place))
 }
 
-/// A distance. Values below the rounding errors of millimetres in `f64` are shown as 0.
-fn length(value: f64) -> String {
-    words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
+/// How the part was laid onto the target, what is left, and what is not determined.
+fn aligned(line: &mut impl FnMut(&str, &str), alignment: &ReportedAlignment) {
+    let how = match alignment.kind.as_str() {
+        "datum" => format!("by the faces {}", alignment.datums.join(", ")),
+        kind => format!("by {kind}"),
+    };
+    let moved = if alignment.inverse {
+        "the target moved back"
+    } else {
+        "moved"
+    };
+    line(
+        "aligned",
+        &format!(
+            "{how}: turned by {}° and {moved} by {}; left are {} mm (RMS, largest {}) at {} points",
+            length(alignment.angle),
+            words::point(alignment.translation),
+            length(alignment.rms),
+            length(alignment.largest),
+            words::count(alignment.points as u64)
+        ),
+    );
+    for motion in &alignment.undetermined {
+        line(
+            "note",
+            &format!("{motion} changes nothing: the part stays as it was along it"),
+        );
+    }
 }
 
 /// What a length may be: one number if it is known.

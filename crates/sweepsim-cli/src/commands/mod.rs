@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod faces;
 mod files;
 mod manual;
 mod run;

@@ -1,5 +1,6 @@
 //! The summary of `simulate`, `sweep` and `verify`.
 
+use super::faces::by_face;
 use crate::session::{Failure, Lines, Outputs};
 use sweepsim_formats::{AxisTravel, Report, ReportedFinding, WorkSummary};
 use sweepsim_job::words::{self, clock};
@@ -71,6 +72,7 @@ pub(crate) fn summary(plan: &Plan, report: &Report, outputs: &Outputs, threads: 
     for (number, axis) in report.axes.iter().flatten().enumerate() {
         line(if number == 0 { "axes" } else { "" }, &travelled(axis));
     }
+    by_face(report.faces.as_deref().unwrap_or_default(), "report.json", &mut line);
     let counts = &report.dexels;
     let covered = words::count(counts.covered as u64);
     let state = match (counts.unresolved.len() as u64, counts.repaired as u64) {

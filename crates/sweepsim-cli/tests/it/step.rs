@@ -1,6 +1,6 @@
 //! STEP files, as a process.
 
-use crate::support::Workdir;
+use crate::support::{Workdir, text};
 use std::fs;
 use sweepsim_formats::read_mesh_file;
 
@@ -34,6 +34,138 @@ fn step_files_are_described_and_become_meshes() {
         told.contains("the reader of STEP files failed at this one") && !told.contains("panicked"),
         "{told}"
     );
+}
+
+/// A part that is 0.2 mm too high on the slope of the tetrahedron, displaced: three-two-one by the other faces brings it
+/// back, and the table says which face is off. Points that do not exist are errors.
+#[test]
+fn deviations_are_told_by_face_after_three_two_one() {
+    let workdir = Workdir::new("");
+    fs::write(workdir.path("goal.step"), tetrahedron()).unwrap();
+    // The slope of the part is 0.2 mm further out, the other faces are where they should be.
+    let far = 10.0 + 0.2 * 3.0_f64.sqrt();
+    let (sine, cosine) = 0.05_f64.sin_cos();
+    let moved = |[x, y, z]: [f64; 3]| [cosine * x - sine * y + 0.4, sine * x + cosine * y - 0.3, z + 0.2];
+    let corners = [[0.0; 3], [far, 0.0, 0.0], [0.0, far, 0.0], [0.0, 0.0, far]].map(moved);
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mut text = String::from("solid part\n");
+    for face in faces {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in face.map(|k: usize| corners[k]) {
+            text += &format!("vertex {x:?} {y:?} {z:?}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    fs::write(workdir.path("part.stl"), text + "endsolid part\n").unwrap();
+    let options = [
+        "compare",
+        "part.stl",
+        "goal.step",
+        "--cells",
+        "40x40",
+        "--size",
+        "200x150",
+        "--align",
+    ];
+    let told = workdir.good(&[&options[..], &["datum=#50,#51,#52", "--json"]].concat());
+    let report: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let alignment = &report["alignment"];
+    assert_eq!(alignment["datums"], serde_json::json!(["#50", "#51", "#52"]));
+    // Coordinates of STL files have seven digits.
+    assert!(alignment["rms"].as_f64() < Some(1e-6), "{alignment}");
+    assert!(
+        (alignment["angle"].as_f64().unwrap() - 0.05_f64.to_degrees()).abs() < 1e-5,
+        "{alignment}"
+    );
+    for (face, excess) in [("#50", 0.0), ("#51", 0.0), ("#52", 0.0), ("#53", 0.2)] {
+        let own = report["faces"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|own| own["face"] == face)
+            .unwrap();
+        assert_eq!(own["kind"], "plane");
+        let near = |name: &str, value: f64| (own[name].as_f64().unwrap() - value).abs() < 2e-6;
+        assert!(
+            near("gouge", 0.0) && near("mean", excess) && near("rms", excess),
+            "{own}"
+        );
+        // On the others, the part reaches beyond the edges of the face.
+        assert!(
+            own["excess"].as_f64().unwrap() <= 0.36 && own["excess"].as_f64().unwrap() >= excess - 2e-6,
+            "{own}"
+        );
+    }
+    let region = &report["regions"][0];
+    assert!(region["kind"] == "excess" && region["face"] == "#53", "{region}");
+    let told = workdir.good(&[&options[..], &["datum=#50,#51,#52"]].concat());
+    for words in [
+        "aligned  by the faces #50, #51, #52",
+        "on face #53",
+        "face  #53 (plane): gouge 0, excess",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let told = workdir.good(&[&options[..], &["best"]].concat());
+    assert!(told.contains("aligned  by best: turned by "), "{told}");
+    for (how, words) in [
+        (
+            "datum=#50,#51,#54",
+            "the target has no face #54: expected one like #50, #51, #52, #53",
+        ),
+        ("datum=#50,#51", "datum has 2 faces: expected three"),
+        ("somehow", "expected best, features, or datum=FACE,FACE,FACE"),
+    ] {
+        let told = workdir.bad(&[&options[..], &[how]].concat());
+        assert!(told.contains(words), "{words}: {told}");
+    }
+}
+
+/// A program that cuts too deep into a face of a STEP target: the finding, the table and the page name the face.
+#[test]
+fn findings_of_verify_name_the_face() {
+    // The tetrahedron upside down would be hard to mill: its slope is cut level at 7 mm, where 10 mm are wanted.
+    let workdir = Workdir::new(
+        "Job(
+    name: \"tip\",
+    grid: Grid(min: (-1, -1), max: (11, 11), cells: (24, 24)),
+    stock: Block(min: (0, 0, 0), max: (10, 10, 10)),
+    tools: { 1: Flat(radius: 3, length: 20) },
+    paths: [Path(tool: 1, poses: [((-4, 1, 7), (0, 0, 1)), ((14, 1, 7), (0, 0, 1))])],
+    target: Mesh(\"tip.step\"),
+    limits: Limits(gouge: 0.05, excess: 20),
+)",
+    );
+    fs::write(
+        workdir.path("tip.step"),
+        tetrahedron().replace("#53=ADVANCED_FACE(''", "#53=ADVANCED_FACE('slope'"),
+    )
+    .unwrap();
+    let output = workdir.run_job("verify", &["--no-proof", "--only", "report", "--moments", "0"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let told = text(&output.stdout);
+    assert!(
+        told.contains(" on face slope") && told.contains("face  slope (plane): gouge 1."),
+        "{told}"
+    );
+    let report: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(workdir.path("out/report.json")).unwrap()).unwrap();
+    // Between the corner at the top, 3 mm above what is left, and the slope: √3.
+    let depth = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert_eq!(report["findings"][0]["face"], "slope");
+    assert_eq!(report["regions"][0]["face"], "slope");
+    let face = report["faces"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|face| face["face"] == "slope")
+        .unwrap();
+    assert!(
+        depth(&face["gouge"]) > 1.2 && depth(&face["gouge"]) < 3.0_f64.sqrt() + 1e-6,
+        "{face}"
+    );
+    let page = fs::read_to_string(workdir.path("out/report.html")).unwrap();
+    assert!(page.contains("Deviations by face of the target") && page.contains("<td>slope</td>"));
 }
 
 /// The corner of a cube of one centimetre.

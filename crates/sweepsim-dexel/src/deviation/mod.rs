@@ -9,11 +9,11 @@ mod samples;
 mod summary;
 
 use crate::dexels::Dexels;
-use crate::mesh::{DistanceTo, MeshError, TriangleSoup};
+use crate::mesh::{DistanceTo, FaceSurfaces, MeshError, TriangleSoup};
 use crate::tri::TriDexels;
 use lines::LineSurface;
 use samples::{SampleDeviation, SurfaceSample};
-pub use summary::{DeviationAt, SurfaceDeviations};
+pub use summary::{DeviationAt, SurfaceDeviations, SurfacePoint};
 
 /// A signed distance, positive outside: it is in this range.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +84,7 @@ pub struct Surface<'a> {
 
 #[derive(Debug)]
 enum SurfaceKind<'a> {
-    Triangles(&'a TriangleSoup),
+    Triangles(&'a TriangleSoup, Option<&'a FaceSurfaces>),
     Tri(&'a TriDexels),
     Lines(Box<LineSurface<'a>>),
 }
@@ -96,9 +96,26 @@ impl<'a> Surface<'a> {
     /// [`MeshError::TooManyVertices`]
     pub fn of_triangles(soup: &'a TriangleSoup) -> Result<Self, MeshError> {
         Ok(Self {
-            kind: SurfaceKind::Triangles(soup),
+            kind: SurfaceKind::Triangles(soup, None),
             tree: DistanceTo::new(soup)?,
         })
+    }
+
+    /// The surface of triangles whose faces are known: measured from what these are, and at points of it.
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn of_faces(soup: &'a TriangleSoup, faces: &'a FaceSurfaces) -> Result<Self, MeshError> {
+        Ok(Self {
+            kind: SurfaceKind::Triangles(soup, Some(faces)),
+            tree: DistanceTo::new(soup)?.with_surfaces(faces.clone()),
+        })
+    }
+
+    /// The number of the triangle nearest to a point, of the surface as triangles.
+    #[must_use]
+    pub fn nearest_triangle(&self, p: [f64; 3]) -> Option<usize> {
+        self.tree.nearest(p).map(|near| near.triangle)
     }
 
     /// The surface of dexels along three axes: exact at their ends, and as [`TriDexels::surface`] between them.
@@ -131,7 +148,7 @@ impl<'a> Surface<'a> {
     pub fn distance(&self, p: [f64; 3]) -> Option<DistanceRange> {
         let near = self.tree.nearest(p)?.distance;
         match &self.kind {
-            SurfaceKind::Triangles(_) => Some(DistanceRange::exactly(near)),
+            SurfaceKind::Triangles(..) => Some(DistanceRange::exactly(near)),
             SurfaceKind::Tri(solid) => {
                 let spacing = solid.sets()[2].grid().spacing();
                 if near.abs() > spacing[0].max(spacing[1]) {
@@ -182,7 +199,7 @@ impl<'a> Surface<'a> {
         of: impl Fn(&SurfaceSample) -> Option<SampleDeviation> + Sync,
     ) -> SurfaceDeviations {
         let found = match &self.kind {
-            SurfaceKind::Triangles(soup) => samples::on_triangles(soup, spacing, of),
+            SurfaceKind::Triangles(soup, faces) => samples::on_triangles(soup, *faces, spacing, of),
             SurfaceKind::Tri(solid) => samples::at_tri_ends(solid, of),
             SurfaceKind::Lines(lines) => lines.samples(of),
         };

@@ -3,7 +3,7 @@
 use super::DistanceRange;
 use crate::grid::Frame;
 use crate::intervals::End;
-use crate::mesh::TriangleSoup;
+use crate::mesh::{FaceSurfaces, TriangleSoup};
 use crate::tri::TriDexels;
 use crate::vector::{length, normal_of, sub};
 use rayon::prelude::*;
@@ -58,15 +58,16 @@ fn longest(corners: &[[f64; 3]; 3]) -> (usize, f64) {
 }
 
 /// On triangles: at all corners, and so that no point is farther than `spacing` from the next sample, or than is
-/// possible with two million.
+/// possible with two million. Where the surfaces of faces are known, samples are on these.
 pub(super) fn on_triangles(
     soup: &TriangleSoup,
+    faces: Option<&FaceSurfaces>,
     spacing: f64,
     of: impl Fn(&SurfaceSample) -> Option<SampleDeviation> + Sync,
 ) -> Vec<SampleDeviation> {
     let area = |t: &[[f64; 3]; 3]| 0.5 * length(normal_of(*t));
-    let is_solid = |corners: &&[[f64; 3]; 3]| area(corners) > 0.0 && area(corners).is_finite();
-    let solid: Vec<(usize, &[[f64; 3]; 3])> = soup.triangles.iter().filter(is_solid).enumerate().collect();
+    let is_solid = |(_, corners): &(usize, &[[f64; 3]; 3])| area(corners) > 0.0 && area(corners).is_finite();
+    let solid: Vec<(usize, &[[f64; 3]; 3])> = soup.triangles.iter().enumerate().filter(is_solid).collect();
     // Pieces have at least about an eighth of the square of their size as their area, or are those of thin triangles.
     let total: f64 = solid.iter().map(|(_, corners)| area(corners)).sum();
     let long = solid.iter().map(|(_, corners)| longest(corners).1);
@@ -82,7 +83,9 @@ pub(super) fn on_triangles(
     }
     let of_triangle = |(number, corners): &(usize, &[[f64; 3]; 3])| {
         let normal = normal_of(**corners).map(|c| 0.5 * c / area(corners));
+        let surface = faces.and_then(|faces| faces.of_triangle(*number));
         let sample = |place: [f64; 3], area: f64| {
+            let place = surface.map_or(place, |surface| surface.nearest(place));
             of(&SurfaceSample {
                 places: smallvec![place],
                 normal,
@@ -167,7 +170,7 @@ mod tests {
             let soup = TriangleSoup {
                 triangles: vec![corners],
             };
-            let found = on_triangles(&soup, 0.5, |sample| {
+            let found = on_triangles(&soup, None, 0.5, |sample| {
                 sample.deviation(|_| Some(DistanceRange::exactly(0.0)))
             });
             let total: f64 = found.iter().map(|sample| sample.area).sum();

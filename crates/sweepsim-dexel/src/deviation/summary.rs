@@ -29,8 +29,20 @@ pub struct SurfaceDeviations {
     pub rms: [f64; 2],
     /// The area of the surface. Walls that may be anywhere between two lines count by the mean over their directions.
     pub area: f64,
-    /// Each sample's distance nearest to 0, and the area that it stands for.
-    pub samples: Vec<(f64, f64)>,
+    /// All points that were looked at, in a fixed order.
+    pub points: Vec<SurfacePoint>,
+}
+
+/// A point of a surface, and its distance from the other one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SurfacePoint {
+    /// Where it is.
+    pub place: [f64; 3],
+    /// Its distance.
+    pub distance: DistanceRange,
+    /// The area that it stands for; 0 for one that is only there for the largest distance.
+    pub area: f64,
 }
 
 impl SurfaceDeviations {
@@ -67,9 +79,8 @@ impl SurfaceDeviations {
                 *square += area * size[k] * size[k];
             }
             all.area += area;
-            if area > 0.0 {
-                all.samples.push((range.nearest_to_0(), area));
-            }
+            let distance = range;
+            all.points.push(SurfacePoint { place, distance, area });
             let DistanceRange { low, high } = range;
             for (side, [least, most]) in [(&mut all.inside, [-high, -low]), (&mut all.outside, [low, high])] {
                 // Not greater: nothing, or a NaN.

@@ -7,8 +7,8 @@
 //! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch, a ray tells the side.
 
 use super::parts::{self, TrianglePart};
-use super::{MeshError, TriangleSoup};
-use crate::vector::{cross, dot, sub};
+use super::{FaceSurfaces, MeshError, TriangleSoup};
+use crate::vector::{along, cross, dot, sub};
 use smallvec::SmallVec;
 use std::collections::HashMap;
 
@@ -36,6 +36,8 @@ pub struct DistanceTo {
     /// The faces of the leaves, one leaf after another; a face is in several if it has been looked at in parts.
     pub(super) order: Vec<u32>,
     pub(super) nodes: Vec<TreeNode>,
+    /// What the triangles approximate, if that is known.
+    pub(super) surfaces: Option<FaceSurfaces>,
 }
 
 /// The point of a surface nearest to a given point.
@@ -48,6 +50,8 @@ pub struct Nearest {
     pub place: [f64; 3],
     /// Unit normal of the triangle there.
     pub normal: [f64; 3],
+    /// The number of the triangle.
+    pub triangle: usize,
 }
 
 /// A triangle near a point.
@@ -74,6 +78,8 @@ impl NearestTriangle {
 pub(super) struct Face {
     pub corners: [u32; 3],
     pub normal: [f64; 3],
+    /// Its number among all triangles that were given.
+    number: u32,
     /// Pseudonormals at the corners, and at the edges from each corner to the next; of any length.
     at_corners: [[f32; 3]; 3],
     at_edges: [[f32; 3]; 3],
@@ -87,10 +93,6 @@ pub(super) struct TreeNode {
     /// first right behind it.
     pub first: u32,
     pub count: u32,
-}
-
-pub(super) fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
-    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
 /// Which part of a triangle is meant.
@@ -192,12 +194,15 @@ impl DistanceTo {
             let length = dot(n, n).sqrt();
             (length > 0.0 && length.is_finite()).then(|| n.map(|c| c / length))
         };
-        let mut faces: Vec<Face> = mesh
-            .triangles
-            .iter()
-            .filter_map(|t| {
+        // Triangles with two corners in one place are none of the mesh.
+        let is_one = |[a, b, c]: &[[f64; 3]; 3]| a != b && b != c && c != a;
+        let given = soup.triangles.iter().enumerate().filter(|(_, t)| is_one(t));
+        let mut faces: Vec<Face> = given
+            .zip(&mesh.triangles)
+            .filter_map(|((number, _), t)| {
                 Some(Face {
                     corners: *t,
+                    number: number as u32,
                     normal: normal_of(t)?,
                     at_corners: [[0.0; 3]; 3],
                     at_edges: [[0.0; 3]; 3],
@@ -251,6 +256,7 @@ impl DistanceTo {
             faces: sorted,
             order,
             nodes,
+            surfaces: None,
         })
     }
 
@@ -286,11 +292,31 @@ impl DistanceTo {
             outside = self.winding(p).map_or(outside, |winding| winding <= 0);
         }
         let away = dot(off, off).sqrt();
-        Some(Nearest {
+        let near = Nearest {
             distance: if outside { away } else { -away },
             place,
             normal: self.faces[number].normal,
-        })
+            triangle: self.faces[number].number as usize,
+        };
+        Some(self.on_surface(p, near))
+    }
+
+    /// The nearest point of the surface that the nearest triangle approximates, if that is known and as near.
+    fn on_surface(&self, p: [f64; 3], near: Nearest) -> Nearest {
+        let exact = || {
+            let faces = self.surfaces.as_ref()?;
+            let surface = faces.of_triangle(near.triangle)?;
+            let (distance, grows) = surface.distance(p)?;
+            let outwards = dot(surface.distance(near.place)?.1, near.normal).signum();
+            let exact = Nearest {
+                distance: outwards * distance,
+                place: along(p, -distance, grows),
+                normal: grows.map(|c| outwards * c),
+                ..near
+            };
+            ((exact.distance - near.distance).abs() <= faces.chord).then_some(exact)
+        };
+        exact().unwrap_or(near)
     }
 
     /// The number of the face nearest to `p` within a reach, and the point of it; others may be as near.

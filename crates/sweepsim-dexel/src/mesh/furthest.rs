@@ -1,7 +1,7 @@
 //! The farthest point of one surface from another.
 
 use super::{DistanceTo, Nearest, TriangleSoup};
-use crate::vector::{cross, dot, normal_of, sub};
+use crate::vector::{along, cross, dot, normal_of, sub};
 use rayon::prelude::*;
 
 /// The maximum number of samples.
@@ -9,10 +9,6 @@ const SAMPLES: f64 = 2e6;
 
 /// A sample, and the nearest point of the other surface.
 type Found = ([f64; 3], Nearest);
-
-fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
-    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
 
 /// The one whose distance is larger; of equal ones the first.
 fn further(a: Found, b: Found) -> Found {

@@ -1,15 +1,20 @@
 //! Triangles, going in and coming out.
 
+mod analytic;
 mod clip;
+mod cluster;
 mod decimate;
 mod distance;
 mod furthest;
 mod near;
 mod parts;
+mod quadric;
 mod rays;
 mod thicken;
 
 use crate::grid::Frame;
+pub use analytic::{AnalyticSurface, FaceSurfaces};
+pub use cluster::ClusteredMesh;
 pub use distance::{DistanceTo, Nearest, NearestTriangle};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};

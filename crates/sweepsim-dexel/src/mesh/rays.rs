@@ -1,7 +1,7 @@
 //! Rays through a surface of triangles.
 
-use super::distance::{DistanceTo, TreeNode, along};
-use crate::vector::{cross, dot, sub};
+use super::distance::{DistanceTo, TreeNode};
+use crate::vector::{along, cross, dot, sub};
 use smallvec::SmallVec;
 use std::ops::Range;
 

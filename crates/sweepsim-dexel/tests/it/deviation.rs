@@ -204,7 +204,7 @@ fn means_are_of_areas() {
     assert!((found.area - area).abs() < 1e-6 * area);
     assert!((found.mean[0] - 0.1 * 400.0 / area).abs() < 1e-3 && found.mean[0] == found.mean[1]);
     assert!((found.rms[0] - (0.01_f64 * 400.0 / area).sqrt()).abs() < 1e-3);
-    let total: f64 = found.samples.iter().map(|(_, area)| area).sum();
+    let total: f64 = found.points.iter().map(|point| point.area).sum();
     assert!((total - area).abs() < 1e-6 * area);
     // Along z, the walls are not known: a fifth of all.
     let found = part.surfaces()[0].deviations_from(&target.surfaces()[2], CELL, TOLERANCE);

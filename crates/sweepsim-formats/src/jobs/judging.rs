@@ -2,14 +2,17 @@
 
 use std::path::PathBuf;
 
-use sweepsim_dexel::{Grid, TriangleSoup};
+use sweepsim_dexel::{FaceSurfaces, Grid, TriangleSoup};
 
 use super::place::Step;
 use super::read::JobReader;
 use super::schema;
 use crate::dexels::{DexelFormat, read_dexels_file, read_tri_dexels_file};
 use crate::error::{FormatError, Problem};
-use crate::meshes::{Colour, parsed_colour};
+use crate::meshes::{Colour, StepFace, StepPart, parsed_colour};
+
+/// The corners of a triangle.
+type Corners = [[f64; 3]; 3];
 
 /// The design part of a job.
 #[derive(Clone, Debug)]
@@ -21,6 +24,36 @@ pub struct Target {
     pub mesh: TriangleSoup,
     /// The colour of each triangle, if it has one.
     pub colours: Vec<Option<Colour>>,
+    /// The faces of a STEP file.
+    pub faces: Option<TargetFaces>,
+}
+
+/// The faces of a target that is a STEP file.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct TargetFaces {
+    /// The faces, with their names and colours.
+    pub faces: Vec<StepFace>,
+    /// Which triangles are theirs, and what they approximate.
+    pub surfaces: FaceSurfaces,
+}
+
+impl TargetFaces {
+    /// Those of a file.
+    #[must_use]
+    pub fn of(part: &StepPart) -> Self {
+        Self {
+            faces: part.faces.clone(),
+            surfaces: part.surfaces(),
+        }
+    }
+
+    /// The face of a triangle.
+    #[must_use]
+    pub fn of_triangle(&self, triangle: usize) -> Option<&StepFace> {
+        let face = *self.surfaces.face_of.get(triangle)? as usize;
+        self.faces.get(face)
+    }
 }
 
 /// How far a part may deviate from its target, in millimetres.
@@ -59,7 +92,7 @@ pub struct LimitRegion {
 }
 
 /// A part of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RegionPlace {
     /// What is in a box along the axes.
@@ -71,54 +104,73 @@ pub enum RegionPlace {
     },
     /// What has this colour.
     Colour(Colour),
+    /// The faces of a STEP file with this name, or the one with this number, as `#123`.
+    Face(String),
 }
 
 impl Target {
     /// A target from a file that has been read; `colours` may be shorter than there are triangles.
     #[must_use]
     pub fn new(file: PathBuf, mesh: TriangleSoup, colours: Vec<Option<Colour>>) -> Self {
-        Self { file, mesh, colours }
+        Self {
+            file,
+            mesh,
+            colours,
+            faces: None,
+        }
+    }
+
+    /// The same with the faces of its STEP file.
+    #[must_use]
+    pub fn with_faces(mut self, faces: Option<TargetFaces>) -> Self {
+        self.faces = faces;
+        self
     }
 
     /// The surface by region: first what is in none, then each region. Triangles that cross the sides of a box are cut.
     #[must_use]
     pub fn by_region(&self, limits: &Limits) -> Vec<TriangleSoup> {
-        let mut rest = self.mesh.clone();
-        let mut colours = self.colours.clone();
+        // What is in no region yet, each with the number of its triangle.
+        let mut rest: Vec<(usize, Corners)> = self.mesh.triangles.iter().copied().enumerate().collect();
         let mut parts = Vec::with_capacity(limits.regions.len() + 1);
         for region in &limits.regions {
-            let mut own = TriangleSoup::default();
-            let (mut other, mut other_colours) = (TriangleSoup::default(), Vec::new());
-            for (number, triangle) in rest.triangles.iter().enumerate() {
-                let colour = colours.get(number).copied().flatten();
-                let [mut inside, mut outside] = match region.place {
-                    RegionPlace::Colour(wanted) => {
-                        let one = TriangleSoup {
-                            triangles: vec![*triangle],
-                        };
-                        let none = TriangleSoup::default();
-                        if colour == Some(wanted) {
-                            [one, none]
-                        } else {
-                            [none, one]
-                        }
-                    }
+            let (mut own, mut other) = (TriangleSoup::default(), Vec::with_capacity(rest.len()));
+            for (number, triangle) in rest {
+                let is_all = match &region.place {
+                    RegionPlace::Colour(wanted) => self.colours.get(number) == Some(&Some(*wanted)),
+                    RegionPlace::Face(wanted) => self.face(number).is_some_and(|face| face.is_called(wanted)),
                     RegionPlace::Box { min, max } => {
                         let one = TriangleSoup {
-                            triangles: vec![*triangle],
+                            triangles: vec![triangle],
                         };
-                        one.split_by_box(min, max)
+                        let [mut inside, outside] = one.split_by_box(*min, *max);
+                        own.triangles.append(&mut inside.triangles);
+                        other.extend(outside.triangles.into_iter().map(|triangle| (number, triangle)));
+                        continue;
                     }
                 };
-                own.triangles.append(&mut inside.triangles);
-                other_colours.extend(outside.triangles.iter().map(|_| colour));
-                other.triangles.append(&mut outside.triangles);
+                if is_all {
+                    own.triangles.push(triangle);
+                } else {
+                    other.push((number, triangle));
+                }
             }
-            (rest, colours) = (other, other_colours);
+            rest = other;
             parts.push(own);
         }
+        let rest = TriangleSoup {
+            triangles: rest.into_iter().map(|(_, triangle)| triangle).collect(),
+        };
         parts.insert(0, rest);
         parts
+    }
+}
+
+impl Target {
+    /// The face of a triangle, if the target is a STEP file.
+    #[must_use]
+    pub fn face(&self, triangle: usize) -> Option<&StepFace> {
+        self.faces.as_ref()?.of_triangle(triangle)
     }
 }
 
@@ -127,9 +179,9 @@ impl JobReader<'_> {
         Ok(match &raw.target {
             None => None,
             Some(schema::Target::Mesh(name)) => {
-                let (mesh, colours) = self.mesh(name, "target", &["target".into()])?;
+                let (mesh, colours, faces) = self.mesh_with_faces(name, "target", &["target".into()])?;
                 let file = self.beside(name, &["target".into()])?;
-                Some(Target { file, mesh, colours })
+                Some(Target::new(file, mesh, colours).with_faces(faces))
             }
             Some(schema::Target::Dexels(name)) => Some(self.target_of_dexels(name, grid)?),
         })
@@ -147,11 +199,7 @@ impl JobReader<'_> {
                 .surface()
         };
         let surface = surface.map_err(|error| self.error(Problem::syntax(format!("{name}: {error}")), &steps))?;
-        Ok(Target {
-            file,
-            mesh: surface.soup().unwrap_or_default(),
-            colours: Vec::new(),
-        })
+        Ok(Target::new(file, surface.soup().unwrap_or_default(), Vec::new()))
     }
 
     /// The limits, for this target.
@@ -179,7 +227,7 @@ impl JobReader<'_> {
             let empty = parts.iter().skip(1).position(|part| part.triangles.is_empty());
             if let Some(number) = empty {
                 let problem = Problem::syntax(format!(
-                    "no surface of the target is left for region {}: expected a box or a colour of it",
+                    "no surface of the target is left for region {}: expected a box, a colour or a face of it",
                     limits.regions[number].name
                 ));
                 return Err(self.error(problem, &[at[0].clone(), "regions".into(), Step::Item(number)]));
@@ -199,8 +247,8 @@ impl JobReader<'_> {
 
     fn region_place(&self, raw: &schema::LimitRegion, at: &[Step]) -> Result<RegionPlace, FormatError> {
         let steps = |name: &str| -> Vec<Step> { at.iter().cloned().chain([name.into()]).collect() };
-        match (&raw.within, &raw.colour) {
-            (Some(schema::RegionBox::Block { min, max }), None) => {
+        match (&raw.within, &raw.colour, &raw.face) {
+            (Some(schema::RegionBox::Block { min, max }), None, None) => {
                 for k in 0..3 {
                     let expected = format!("greater than that of min, {}", min[k]);
                     let what = format!("the {} of max", ['x', 'y', 'z'][k]);
@@ -210,12 +258,13 @@ impl JobReader<'_> {
                 let [min, max] = [min, max].map(|corner| corner.map(|c| c * self.unit));
                 Ok(RegionPlace::Box { min, max })
             }
-            (None, Some(text)) => parsed_colour(text).map(RegionPlace::Colour).ok_or_else(|| {
+            (None, None, Some(name)) => Ok(RegionPlace::Face(name.clone())),
+            (None, Some(text), None) => parsed_colour(text).map(RegionPlace::Colour).ok_or_else(|| {
                 let problem = Problem::value("the colour of a region", format!("{text:?}"), "one like \"#ff8000\"");
                 self.error(problem, &steps("colour"))
             }),
             _ => {
-                let problem = Problem::syntax("a region has one place: expected `within` or `colour`");
+                let problem = Problem::syntax("a region has one place: expected `within`, `colour` or `face`");
                 Err(self.error(problem, at))
             }
         }

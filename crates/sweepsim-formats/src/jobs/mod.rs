@@ -12,7 +12,7 @@ mod solids;
 mod tools;
 
 pub use job::{Job, Units};
-pub use judging::{LimitRegion, Limits, RegionPlace, Target};
+pub use judging::{LimitRegion, Limits, RegionPlace, Target, TargetFaces};
 pub use paths::{AsWear, Flags, JobPath, OnMachine, Origin, Origins, Seconds};
 pub use provided::Provided;
 pub use setups::Setup;

@@ -380,6 +380,8 @@ pub(crate) struct LimitRegion {
     pub within: Option<RegionBox>,
     #[serde(default)]
     pub colour: Option<String>,
+    #[serde(default)]
+    pub face: Option<String>,
     pub gouge: f64,
     pub excess: f64,
 }

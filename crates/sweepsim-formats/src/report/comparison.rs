@@ -44,8 +44,70 @@ pub struct ComparisonReport {
     /// excess.
     #[serde(default)]
     pub regions: Vec<ReportedRegion>,
+    /// How the part deviates on each face of the target, if that is a STEP file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<FaceDeviation>,
+    /// How the part was laid onto the target, if that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alignment: Option<ReportedAlignment>,
     /// The area of the part's surface by distance: that end of what it may be that is nearest to 0.
     pub histogram: Vec<HistogramBar>,
+}
+
+/// How a part deviates on a face of its target.
+///
+/// Points of the part count for the face whose triangle is nearest, points of the face for itself.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct FaceDeviation {
+    /// Its name, or its number in the file as `#123`.
+    pub face: String,
+    /// Its number in the file.
+    pub entity: usize,
+    /// What it is part of: `plane`, `cylinder`, `cone`, `sphere`, `torus`, or another kind of surface.
+    pub kind: String,
+    /// Its colour, like `#ff8000`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<String>,
+    /// Its area.
+    pub area: f64,
+    /// How deep the part is below it at most: what is certain.
+    pub gouge: f64,
+    /// How high the part is above it at most: what is certain.
+    pub excess: f64,
+    /// The mean over the face, positive where material is left.
+    pub mean: f64,
+    /// The root of the mean square over the face.
+    pub rms: f64,
+}
+
+/// The rigid motion that laid a part onto its target: `p` went to `rotation · p + translation`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ReportedAlignment {
+    /// `best`, `features` or `datum`.
+    pub kind: String,
+    /// The faces of `datum`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub datums: Vec<String>,
+    /// The rows of the rotation.
+    pub rotation: [[f64; 3]; 3],
+    /// The translation, in mm.
+    pub translation: [f64; 3],
+    /// The angle of the rotation, in degrees.
+    pub angle: f64,
+    /// What is left of the distances that were made small: the root of the mean square.
+    pub rms: f64,
+    /// The largest of them.
+    pub largest: f64,
+    /// The number of points of the part whose distances these are.
+    pub points: usize,
+    /// Motions that change nothing, each in words: the part was not moved along them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub undetermined: Vec<String>,
+    /// The target was moved onto the part instead, by the inverse: places are those of the part as it was.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inverse: bool,
 }
 
 /// How far one surface is from another, along the normal of that.

@@ -10,7 +10,7 @@ mod work;
 
 pub use axes::AxisTravel;
 pub use ci::{Annotation, AnnotationLevel, CiCase, CiProgram};
-pub use comparison::{ComparisonReport, HistogramBar, SurfaceDeviation};
+pub use comparison::{ComparisonReport, FaceDeviation, HistogramBar, ReportedAlignment, SurfaceDeviation};
 pub use junit::to_junit;
 pub use sarif::to_sarif;
 pub use statement::{Measure, OpenPlace, Statement, StatementState, StatementWitness};
@@ -67,6 +67,9 @@ pub struct Report {
     /// Where the result deviates from the target by more than its limits (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regions: Option<Vec<ReportedRegion>>,
+    /// How the result deviates on each face of the target, if that is a STEP file (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faces: Option<Vec<FaceDeviation>>,
     /// What each path removes (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paths: Option<Vec<PathSummary>>,
@@ -254,6 +257,9 @@ pub struct ReportedFinding {
     /// The region of the limits that it exceeds (`excess`); none for the limits of the whole part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
+    /// The face of the target on which it is, if that is a STEP file: its name, or its number as `#123`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
     /// It was found between the lines of the dexels, by the proof of a statement.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub between: bool,
@@ -280,6 +286,9 @@ pub struct ReportedRegion {
     /// The region of the limits that it exceeds; none for the limits of the whole part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
+    /// The face of the target on which it is, if that is a STEP file: its name, or its number as `#123`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
     /// The point farthest from the target's surface.
     pub place: [f64; 3],
     /// How far that is, in mm.

@@ -48,6 +48,9 @@ pub fn harm(finding: &ReportedFinding, report: &Report) -> String {
             text += &format!("{} mm {way} at ({x}, {y}, {z})", measure(finding.depth));
         }
     }
+    if let Some(face) = &finding.face {
+        text += &format!(" on face {face}");
+    }
     text += match finding.courses.as_deref() {
         Some("straight") => ", if the rapid is straight",
         Some("dog-leg") => ", if the rapid is a dog-leg",

@@ -9,9 +9,10 @@ use crate::base::JobError;
 use crate::request::Task;
 use crate::session::CancelOnly;
 use crate::show::{Placement, distance, placements};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 use sweepsim::motion::{Assembly, Path, Pose, Tool};
-use sweepsim::verify::{Scene, ToolPath, VerifyOptions, verify};
+use sweepsim::verify::{Scene, Target, ToolPath, VerifyOptions, verify};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::JobPath;
 use sweepsim_report::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Track, TrackPoint};
@@ -163,31 +164,53 @@ fn thinned(grid: &Grid) -> Option<Grid> {
     Some(thin.in_frame(*grid.frame()))
 }
 
-fn layer(dexels: &Dexels) -> DexelLayer {
+/// The distances of a line's ends from the target; NaN without one.
+fn deviations(dexels: &Dexels, line: usize, target: Option<&Target>) -> Vec<[f32; 2]> {
+    let grid = dexels.grid();
+    let (i, j) = grid.place(line);
+    let distance = |z: f64| {
+        let place = grid.frame().to_world([grid.x(i), grid.y(j), z]);
+        let near = target.and_then(|target| target.distance().nearest(place));
+        near.map_or(f32::NAN, |near| near.distance as f32)
+    };
+    dexels.at(line).heights().map(|ends| ends.map(distance)).collect()
+}
+
+fn layer(dexels: &Dexels, target: Option<&Target>) -> DexelLayer {
     let grid = dexels.grid();
     let area = Area {
         min: grid.min(),
         max: grid.max(),
         cells: grid.cells(),
     };
+    let numbers = 0..grid.len();
+    let mut measured = numbers
+        .into_par_iter()
+        .map(|line| deviations(dexels, line, target))
+        .collect::<Vec<_>>()
+        .into_iter();
+    // Lines come by column, then row, as they are numbered.
     DexelLayer::new(area, |i, j, line| {
-        let ends = dexels.intervals(i, j).heights();
-        line.extend(ends.map(|[lower, upper]| {
-            [
-                LayerEnd::at(lower, [0.0, 0.0, -1.0]),
-                LayerEnd::at(upper, [0.0, 0.0, 1.0]),
-            ]
-        }));
+        let own = measured.next().unwrap_or_default();
+        for (ends, deviations) in dexels.intervals(i, j).heights().zip(own) {
+            let [mut lower, mut upper] = [
+                LayerEnd::at(ends[0], [0.0, 0.0, -1.0]),
+                LayerEnd::at(ends[1], [0.0, 0.0, 1.0]),
+            ];
+            [lower.deviation, upper.deviation] = deviations;
+            line.push([lower, upper]);
+        }
     })
 }
 
 /// What changed between two states.
-fn changes(clock: f64, before: &Dexels, after: &Dexels) -> KeyFrame {
+fn changes(clock: f64, before: &Dexels, after: &Dexels, target: Option<&Target>) -> KeyFrame {
     let mut frame = KeyFrame::new(clock);
-    for line in 0..after.grid().len() {
-        if !before.at(line).heights().eq(after.at(line).heights()) {
-            frame.push(line as u32, after.at(line).heights());
-        }
+    let lines = (0..after.grid().len()).into_par_iter();
+    let changed = lines.filter(|line| !before.at(*line).heights().eq(after.at(*line).heights()));
+    let found: Vec<_> = changed.map(|line| (line, deviations(after, line, target))).collect();
+    for (line, own) in found {
+        frame.push_measured(line as u32, after.at(line).heights().zip(own));
     }
     frame
 }
@@ -206,7 +229,7 @@ fn moments(source: &PageSource, count: u16, made: &mut Courses) -> Result<(), Jo
     let tools: Vec<&Tool> = job.tools.values().collect();
     let assemblies: Vec<Assembly> = tools.iter().map(|tool| Assembly::new((*tool).clone())).collect();
     let options = VerifyOptions::new(session.request.sweep_options(job));
-    let start = layer(&stock);
+    let start = layer(&stock, source.target);
     let mut found = Vec::new();
     let grid = *stock.grid();
     let mut shown = stock.clone();
@@ -255,7 +278,7 @@ fn moments(source: &PageSource, count: u16, made: &mut Courses) -> Result<(), Jo
             let t = if span > 0.0 { (clock - before.clock) / span } else { 1.0 };
             poses.extend(place(before).between(&place(point), t).pose(tool));
             cut(&mut poses, point.tool, &mut now)?;
-            let frame = changes(clock, &shown, &now);
+            let frame = changes(clock, &shown, &now, source.target);
             let removed = shown.volume() - now.volume();
             made.removal
                 .push([since, clock, removed.max(0.0) / (clock - since).max(f64::MIN_POSITIVE)]);

@@ -6,6 +6,7 @@ mod machine;
 mod program;
 mod proofs;
 mod solids;
+mod surface;
 mod tables;
 mod verdict;
 
@@ -17,15 +18,17 @@ use course::Courses;
 use deviation::Deviated;
 use program::Programs;
 use sweepsim::verify::Target;
-use sweepsim_dexel::{Dexels, Source};
+use sweepsim_dexel::{Dexels, Mesh, Source, TriDexels};
 use sweepsim_formats::{Job, Measure, MoveSummary, Report, StatementState};
-use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
+use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Solid, Table, measure};
 
 /// What the page is made of.
 pub(crate) struct PageSource<'a> {
     pub session: Session<'a>,
     pub report: &'a Report,
     pub dexels: &'a Dexels,
+    /// The part along three axes with its surface, if the run made them.
+    pub solid: Option<(&'a TriDexels, &'a Mesh)>,
     pub target: Option<&'a Target>,
     /// What each move does, if that is known.
     pub moves: &'a [MoveSummary],
@@ -70,6 +73,7 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
     page.tables = tables::setups(source);
     page.tables.push(tables::tools(source, &made));
+    page.tables.extend(tables::faces(report));
     page.tables.extend(tables::axes(report));
     page.tables.push(phases(source));
     if !report.dexels.unresolved.is_empty() {
@@ -89,7 +93,14 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
         words::counted(source.threads as u64, "thread"),
         job.tolerance,
     );
-    page.scene = Some(scene(source, deviated.as_ref(), made, programs));
+    let (solids, fewer) = solids::solids(job, task);
+    page.notes.extend(fewer);
+    let scene = scene(source, deviated.as_ref(), made, programs, solids);
+    if let Some(own) = scene.surface.as_ref().filter(|own| own.whole > own.triangles.len()) {
+        let note = surface::fewer("the part's surface", own.whole, own.triangles.len(), own.farthest);
+        page.notes.push(note);
+    }
+    page.scene = Some(scene);
     Ok(page.html())
 }
 
@@ -110,26 +121,38 @@ fn part(dexels: &Dexels, deviated: Option<&Deviated>, first_moves: &[u32]) -> De
                 z: end.z,
                 normal: end.normal,
                 deviation,
-                maker: match end.source {
-                    Source::Stock => 0,
-                    Source::Cut { path, segment, .. } => {
-                        first_moves.get(path as usize).map_or(0, |first| first + segment + 1)
-                    }
-                },
+                maker: number_of(end.source, first_moves),
             };
             line.push([end(interval.lower, own[0]), end(interval.upper, own[1])]);
         }
     })
 }
 
-fn scene(source: &PageSource, deviated: Option<&Deviated>, made: Courses, programs: Programs) -> Scene {
+/// What made a piece of the surface: 0 for the stock, otherwise 1 plus the number of the move in the whole program.
+fn number_of(source: Source, first_moves: &[u32]) -> u32 {
+    match source {
+        Source::Stock => 0,
+        Source::Cut { path, segment, .. } => first_moves.get(path as usize).map_or(0, |first| first + segment + 1),
+    }
+}
+
+fn scene(
+    source: &PageSource,
+    deviated: Option<&Deviated>,
+    made: Courses,
+    programs: Programs,
+    solids: Vec<Solid>,
+) -> Scene {
     let job = source.session.job;
     let mut scene = Scene::new(part(source.dexels, deviated, &made.first_moves));
     let frame = job.grid.frame();
     let [x, y, z] = frame.axes();
     scene.frame = [frame.origin(), x, y, z];
     scene.limits = source.target.map(Target::limits);
-    scene.solids = solids::solids(job, source.session.request.task);
+    scene.surface = source
+        .solid
+        .map(|(solid, mesh)| surface::surface(solid, mesh, source.target, &made.first_moves));
+    scene.solids = solids;
     scene.tools = solids::tools(job);
     let numbers: Vec<u32> = job.tools.keys().copied().collect();
     let tool = |number| numbers.binary_search(&number).unwrap_or_default() as u16;

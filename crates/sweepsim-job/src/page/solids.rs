@@ -1,42 +1,56 @@
 //! Stock, target, fixtures and tools as they are shown.
 
+use super::surface;
 use crate::request::Task;
 use crate::show::shape;
 use sweepsim::motion::{BodyKind, Tool};
-use sweepsim_dexel::{Stock, TriDexels, TriangleSoup};
+use sweepsim_dexel::{Mesh, Stock, TriDexels};
 use sweepsim_formats::Job;
 use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
 
 /// Sides of a cylinder, and of a ball from pole to pole.
 const SIDES: usize = 64;
-/// Larger meshes are not shown: a page is no CAD system.
+/// Larger meshes are shown with fewer triangles; so many of a union are shown at all.
 const LARGEST: usize = 300_000;
 
-/// Stock, target and fixtures.
-pub(super) fn solids(job: &Job, task: Task) -> Vec<Solid> {
-    let mut solids = Vec::new();
-    let mut add = |kind, setup, stock: &Stock| {
+/// Stock, target and fixtures; and what is said of those that are shown with fewer triangles.
+pub(super) fn solids(job: &Job, task: Task) -> (Vec<Solid>, Vec<String>) {
+    let (mut solids, mut notes) = (Vec::new(), Vec::new());
+    let mut add = |kind, setup, stock: &Stock, name: &str| {
         for (vertices, triangles) in meshes(stock) {
+            let (whole, mesh) = (
+                triangles.len(),
+                Mesh {
+                    vertices,
+                    triangles,
+                    ..Mesh::default()
+                },
+            );
+            let shown = mesh.clustered(LARGEST);
+            if shown.within > 0.0 {
+                let farthest = shown.farthest(&mesh).unwrap_or(shown.within);
+                notes.push(surface::fewer(name, whole, shown.mesh.triangles.len(), farthest));
+            }
             solids.push(Solid {
                 kind,
                 setup,
-                vertices,
-                triangles,
+                vertices: shown.mesh.vertices,
+                triangles: shown.mesh.triangles,
             });
         }
     };
     if task != Task::Sweep {
-        add(SolidKind::Stock, None, &job.stock);
+        add(SolidKind::Stock, None, &job.stock, "the stock");
     }
     for (number, setup) in job.setups.iter().enumerate() {
         for fixture in &setup.fixtures {
-            add(SolidKind::Fixture, Some(number as u16), fixture);
+            add(SolidKind::Fixture, Some(number as u16), fixture, "a fixture");
         }
     }
     if let Some(target) = &job.target {
-        add(SolidKind::Target, None, &Stock::Mesh(target.mesh.clone()));
+        add(SolidKind::Target, None, &Stock::Mesh(target.mesh.clone()), "the target");
     }
-    solids
+    (solids, notes)
 }
 
 pub(super) type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
@@ -52,15 +66,17 @@ fn meshes(stock: &Stock) -> Vec<Triangles> {
             height,
         } => vec![cylinder(*base, *axis, *radius, *height)],
         Stock::Ball { centre, radius } => vec![ball(*centre, *radius)],
-        Stock::Mesh(soup) => of_soup(soup).into_iter().collect(),
+        Stock::Mesh(soup) => {
+            let mesh = soup.indexed().ok();
+            mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
+        }
         Stock::TriDexels(sets) => {
             let solid = TriDexels::from_sets((**sets).clone()).ok();
             let mesh = solid.and_then(|solid| solid.surface().ok());
-            let mesh = mesh.filter(|mesh| mesh.triangles.len() <= LARGEST);
             mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
         }
         Stock::Dexels(dexels) => {
-            let mesh = dexels.surface().ok().filter(|mesh| mesh.triangles.len() <= LARGEST);
+            let mesh = dexels.surface().ok();
             mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
         }
         Stock::Union(parts) => {
@@ -80,14 +96,6 @@ fn meshes(stock: &Stock) -> Vec<Triangles> {
         // Kinds to come.
         _ => Vec::new(),
     }
-}
-
-fn of_soup(soup: &TriangleSoup) -> Option<Triangles> {
-    if soup.triangles.len() > LARGEST {
-        return None;
-    }
-    let mesh = soup.indexed().ok()?;
-    Some((mesh.vertices, mesh.triangles))
 }
 
 pub(super) fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {

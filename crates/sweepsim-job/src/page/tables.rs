@@ -6,7 +6,7 @@ use crate::base::words::{self, clock};
 use crate::describe::tool_in_words;
 use crate::request::Task;
 use sweepsim_dexel::{Frame, Stock};
-use sweepsim_formats::{AxisTravel, Job, JobPath, Report};
+use sweepsim_formats::{AxisTravel, FaceDeviation, Job, JobPath, Report};
 use sweepsim_report::{Table, measure};
 
 /// Fixtures that are described one by one.
@@ -250,6 +250,36 @@ pub(super) fn axes(report: &Report) -> Option<Table> {
             .into(),
         rows: axes.iter().map(row).collect(),
         numbers: vec![1, 2, 4],
+        printed: true,
+    })
+}
+
+/// The deviations on the faces of a target that is a STEP file.
+pub(super) fn faces(report: &Report) -> Option<Table> {
+    let number = |value: f64| {
+        if value.abs() < 5e-7 {
+            "0".to_owned()
+        } else {
+            measure(value)
+        }
+    };
+    let row = |face: &FaceDeviation| {
+        let colour = face.colour.clone().unwrap_or_else(|| "–".to_owned());
+        let numbers = [face.area, face.gouge, face.excess, face.mean, face.rms].map(number);
+        [face.face.clone(), face.kind.clone(), colour]
+            .into_iter()
+            .chain(numbers)
+            .collect()
+    };
+    let faces = report.faces.as_ref()?;
+    Some(Table {
+        title: "Deviations by face of the target".to_owned(),
+        note: "In mm, along the normal: the deepest gouge and the highest excess found on each face, their mean (positive where material is left) and root mean square.".to_owned(),
+        columns: ["Face", "Kind", "Colour", "Area mm²", "Gouge", "Excess", "Mean", "RMS"]
+            .map(str::to_owned)
+            .into(),
+        rows: faces.iter().map(row).collect(),
+        numbers: vec![3, 4, 5, 6, 7],
         printed: true,
     })
 }

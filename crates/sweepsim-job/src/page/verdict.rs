@@ -92,6 +92,9 @@ pub(super) fn findings(
         if let Some(courses) = &found.courses {
             fact("Course of the rapid", courses.clone());
         }
+        if let Some(face) = &found.face {
+            fact("Face", face.clone());
+        }
         if let Some(region) = &found.region {
             fact("Limits of", format!("region {region}"));
         }

@@ -1,6 +1,8 @@
 //! How a part differs from its target.
 
+use super::align::{self, Alignment};
 use super::deviation;
+use super::faces::face_at;
 use super::solid::{GridOptions, Solid};
 use crate::base::{JobError, Sink};
 use crate::request::ViewOptions;
@@ -13,7 +15,8 @@ use sweepsim::Monitor;
 use sweepsim::verify::deviations;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Operation, Stock, StockError, Surface, TriangleSoup};
 use sweepsim_formats::{
-    ComparisonReport, Job, LimitRegion, Limits, MeshFormat, RegionPlace, Target as Goal, read_coloured_mesh_file,
+    ComparisonReport, Job, LimitRegion, Limits, MeshFormat, RegionPlace, ReportedAlignment, STEP_CHORD, Target as Goal,
+    TargetFaces, read_coloured_mesh_file, read_step,
 };
 
 /// The limits of deviations.
@@ -53,6 +56,9 @@ pub struct CompareRequest {
     pub limits: Option<DeviationLimits>,
     /// The distance at the ends of the picture's colour scale, in millimetres. Without it, the largest.
     pub range: Option<f64>,
+    /// How the part is laid onto the target first. Without it, both stay where they are.
+    #[serde(default)]
+    pub align: Option<Alignment>,
     /// The grid, where the files do not tell it.
     pub grid: GridOptions,
     /// How the picture is drawn.
@@ -69,6 +75,8 @@ pub struct Pair<'a> {
     target: Solid,
     mesh: Mesh,
     goal: Mesh,
+    /// The faces of STEP files.
+    faces: [Option<TargetFaces>; 2],
     grid: Grid,
     report: ComparisonReport,
 }
@@ -93,6 +101,7 @@ impl CompareRequest {
             tolerance: 1e-6,
             limits: None,
             range: None,
+            align: None,
             grid: GridOptions::default(),
             view: ViewOptions::default(),
             given: [None, None],
@@ -123,7 +132,12 @@ impl CompareRequest {
         report.target = self.target.display().to_string();
         report.tolerance = self.tolerance;
         let start = Instant::now();
-        let [part, target] = self.solids()?;
+        let [(part, of_part), (target, of_target)] = self.solids()?;
+        let (mut both, mut faces) = ([part, target], [of_part, of_target]);
+        if let Some(alignment) = &self.align {
+            report.alignment = Some(lay(alignment, &mut both, &mut faces)?);
+        }
+        let [part, target] = both;
         let (mesh, goal) = (part.surface()?, target.surface()?);
         let around = bounds(&mesh).ok_or_else(|| JobError::file(&self.part, "this part is empty"))?;
         if bounds(&goal).is_none() {
@@ -140,13 +154,14 @@ impl CompareRequest {
             target,
             mesh,
             goal,
+            faces,
             grid,
             report,
         })
     }
 
     /// Both parts. A table of dexels takes the grid of the other part, unless the options name one.
-    fn solids(&self) -> Result<[Solid; 2], JobError> {
+    fn solids(&self) -> Result<[(Solid, Option<TargetFaces>); 2], JobError> {
         let given = if self.grid.grid.is_some() || self.grid.area.is_some() {
             self.grid.grid(None)?
         } else {
@@ -158,21 +173,27 @@ impl CompareRequest {
         };
         if is_table(0) && !is_table(1) {
             let target = self.solid(1, given.as_ref())?;
-            let grid = given.or(target.grid());
+            let grid = given.or(target.0.grid());
             return Ok([self.solid(0, grid.as_ref())?, target]);
         }
         let part = self.solid(0, given.as_ref())?;
-        let grid = given.or(part.grid());
+        let grid = given.or(part.0.grid());
         let target = self.solid(1, grid.as_ref())?;
         Ok([part, target])
     }
 
     /// The part (0) or the target (1).
-    fn solid(&self, number: usize, grid: Option<&Grid>) -> Result<Solid, JobError> {
+    fn solid(&self, number: usize, grid: Option<&Grid>) -> Result<(Solid, Option<TargetFaces>), JobError> {
+        let file = [&self.part, &self.target][number];
         match &self.given[number] {
-            Some(Part::Mesh(mesh)) => Ok(Solid::Mesh(mesh.clone())),
-            Some(Part::Dexels(dexels)) => Ok(Solid::Dexels(dexels.clone())),
-            None => Solid::read([&self.part, &self.target][number], grid),
+            Some(Part::Mesh(mesh)) => Ok((Solid::Mesh(mesh.clone()), None)),
+            Some(Part::Dexels(dexels)) => Ok((Solid::Dexels(dexels.clone()), None)),
+            None if MeshFormat::of(file) == Some(MeshFormat::Step) => {
+                let part = read_step(file, STEP_CHORD)?;
+                let faces = TargetFaces::of(&part);
+                Ok((Solid::Mesh(part.mesh), Some(faces)))
+            }
+            None => Ok((Solid::read(file, grid)?, None)),
         }
     }
 }
@@ -189,6 +210,7 @@ impl Pair<'_> {
             target,
             mesh,
             goal,
+            faces,
             grid,
             mut report,
         } = self;
@@ -200,12 +222,13 @@ impl Pair<'_> {
         };
         let failed = |error| JobError::file(&request.target, error);
         volumes(&mut report, &dexels, &surface).map_err(failed)?;
-        regions(&mut report, request, &dexels, surface)?;
+        regions(&mut report, request, &dexels, surface, faces[1].as_ref())?;
         report.cells = grid.cells();
         let soups = [&mesh, &goal].map(soup);
-        let (part, target) = (part.to_compare(&soups[0])?, target.to_compare(&soups[1])?);
+        let part = part.to_compare(&soups[0], faces[0].as_ref())?;
+        let target = target.to_compare(&soups[1], faces[1].as_ref())?;
         let [dx, dy] = grid.spacing();
-        deviation::describe(&mut report, [&part, &target], dx.min(dy));
+        deviation::describe(&mut report, [&part, &target], faces[1].as_ref(), dx.min(dy));
         let seconds = start.elapsed().as_secs_f64();
         report.seconds.insert("compare".to_owned(), seconds);
         let start = Instant::now();
@@ -245,12 +268,48 @@ impl Difference {
     }
 }
 
+/// Lays a part onto its target. Dexels stay where their lines are: then the target is laid onto the part.
+fn lay(
+    alignment: &Alignment,
+    [part, target]: &mut [Solid; 2],
+    faces: &mut [Option<TargetFaces>; 2],
+) -> Result<ReportedAlignment, JobError> {
+    let (mesh, goal) = (part.surface()?, target.surface()?);
+    let walls = !matches!(part, Solid::Dexels(_));
+    let found = align::register(alignment, [&mesh, &goal], walls, faces[1].as_ref())?;
+    let mut report = found.report.clone();
+    let frame = found.frame()?;
+    let back = found.inverse().frame()?;
+    let (moved, place) = match (part.placed(&frame), target.placed(&back)) {
+        (Some(placed), _) => {
+            *part = placed;
+            (&mut faces[0], frame)
+        }
+        (None, Some(placed)) => {
+            *target = placed;
+            report.inverse = true;
+            (&mut faces[1], back)
+        }
+        (None, None) => {
+            return Err(JobError::request(
+                "align",
+                "both parts are dexels, which cannot be moved: expected a mesh or a STEP file",
+            ));
+        }
+    };
+    if let Some(faces) = moved {
+        faces.surfaces = faces.surfaces.moved(|p| place.to_world(p), |v| place.turn_to_world(v));
+    }
+    Ok(report)
+}
+
 /// The connected regions beyond the limits: those of `--limits`.
 fn regions(
     report: &mut ComparisonReport,
     options: &CompareRequest,
     dexels: &Dexels,
     surface: TriangleSoup,
+    faces: Option<&TargetFaces>,
 ) -> Result<(), JobError> {
     let limits = match &options.limits {
         None => Limits::new(targets::LIMIT, targets::LIMIT),
@@ -260,16 +319,20 @@ fn regions(
             .ok_or_else(|| JobError::file(file, "this job has no limits"))?,
     };
     let by_colour = |region: &LimitRegion| matches!(region.place, RegionPlace::Colour(_));
-    let colours = if limits.regions.iter().any(by_colour)
-        && options.given[1].is_none()
-        && MeshFormat::of(&options.target).is_some()
-    {
-        read_coloured_mesh_file(&options.target)?.1
-    } else {
-        Vec::new()
+    let is_file = options.given[1].is_none() && MeshFormat::of(&options.target).is_some();
+    let colours = match faces {
+        Some(faces) => faces
+            .surfaces
+            .face_of
+            .iter()
+            .map(|face| faces.faces[*face as usize].colour)
+            .collect(),
+        None if is_file && limits.regions.iter().any(by_colour) => read_coloured_mesh_file(&options.target)?.1,
+        None => Vec::new(),
     };
     let failed = |error: &dyn std::fmt::Display| JobError::file(&options.target, error);
-    let parts = Goal::new(options.target.clone(), surface.clone(), colours).by_region(&limits);
+    let goal = Goal::new(options.target.clone(), surface.clone(), colours).with_faces(faces.cloned());
+    let parts = goal.by_region(&limits);
     let target = targets::with_limits(&surface, Some(parts), Some(&limits), dexels.grid(), options.tolerance);
     let target = target.map_err(|error| failed(&error))?;
     // What is missing is missing, whatever the stock was.
@@ -280,6 +343,9 @@ fn regions(
     let found = deviations(&stock, dexels, &target);
     report.limits = [limits.gouge, limits.excess];
     report.regions = targets::regions(&found, Some(&limits));
+    for region in &mut report.regions {
+        region.face = face_at(&goal, &target, region.place);
+    }
     Ok(())
 }
 

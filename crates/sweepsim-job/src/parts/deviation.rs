@@ -1,13 +1,19 @@
 //! What a comparison reports of the distances between two surfaces.
 
+use super::faces::by_face;
 use sweepsim_dexel::{Surface, SurfaceDeviations};
-use sweepsim_formats::{ComparisonReport, DeviationSummary, HistogramBar, SurfaceDeviation};
+use sweepsim_formats::{ComparisonReport, DeviationSummary, HistogramBar, SurfaceDeviation, TargetFaces};
 
 /// Bars of the histogram.
 const BARS: usize = 20;
 
-/// Compares the surfaces of a part and of its target, both ways, and fills in the report.
-pub(super) fn describe(report: &mut ComparisonReport, [part, target]: [&Surface<'_>; 2], spacing: f64) {
+/// Compares the surfaces of a part and of its target, both ways, and fills in the report; by face if the target has any.
+pub(super) fn describe(
+    report: &mut ComparisonReport,
+    [part, target]: [&Surface<'_>; 2],
+    faces: Option<&TargetFaces>,
+    spacing: f64,
+) {
     let tolerance = report.tolerance;
     let of_part = part.deviations_from(target, spacing, tolerance);
     // A point of the target outside the part: there the part is missing.
@@ -20,7 +26,10 @@ pub(super) fn describe(report: &mut ComparisonReport, [part, target]: [&Surface<
     };
     report.gouge = side(&of_part, -1.0, largest([of_part.inside, of_target.outside]), tolerance);
     report.excess = side(&of_part, 1.0, largest([of_part.outside, of_target.inside]), tolerance);
-    report.histogram = histogram(&of_part.samples);
+    if let Some(faces) = faces {
+        report.faces = by_face(target, faces, [&of_part, &of_target], tolerance);
+    }
+    report.histogram = histogram(&samples(&of_part));
     (report.of_part, report.of_target) = (one_way(&of_part), one_way(&of_target));
 }
 
@@ -31,12 +40,22 @@ fn one_way(found: &SurfaceDeviations) -> SurfaceDeviation {
     one
 }
 
+/// Of each point that stands for an area, its distance nearest to 0, and the area.
+fn samples(found: &SurfaceDeviations) -> Vec<(f64, f64)> {
+    let points = found.points.iter().filter(|point| point.area > 0.0);
+    points
+        .map(|point| (point.distance.nearest_to_0(), point.area))
+        .collect()
+}
+
 /// The samples on one side that are certainly beyond the tolerance.
 fn side(found: &SurfaceDeviations, sign: f64, [least, most]: [f64; 2], tolerance: f64) -> DeviationSummary {
     let mut all = DeviationSummary::default();
     all.max = least;
     all.at_most = (most > least).then_some(most);
-    let beyond = found.samples.iter().map(|(distance, area)| (sign * distance, area));
+    let beyond = samples(found)
+        .into_iter()
+        .map(|(distance, area)| (sign * distance, area));
     for (distance, area) in beyond.filter(|(distance, _)| *distance > tolerance) {
         all.mean += area * distance;
         all.rms += area * distance * distance;

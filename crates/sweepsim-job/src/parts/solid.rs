@@ -5,8 +5,8 @@ use crate::base::{JobError, check_room};
 use crate::show::{CRISP, soup};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, Surface, TriDexels, TriangleSoup};
-use sweepsim_formats::{DexelFormat, Job, read_dexels_file, read_mesh_file, read_tri_dexels_file};
+use sweepsim_dexel::{Dexels, Frame, Grid, Mesh, MeshError, Stock, Surface, TriDexels, TriangleSoup};
+use sweepsim_formats::{DexelFormat, Job, TargetFaces, read_dexels_file, read_mesh_file, read_tri_dexels_file};
 
 /// The default number of dexels along the longer side of a mesh.
 const CELLS: f64 = 300.0;
@@ -58,13 +58,29 @@ impl Solid {
         }
     }
 
-    /// The surface, to be compared: of a mesh as `triangles`, which are those of it.
-    pub fn to_compare<'a>(&'a self, triangles: &'a TriangleSoup) -> Result<Surface<'a>, MeshError> {
-        match self {
-            Self::Dexels(dexels) => Surface::of_dexels(dexels),
-            Self::TriDexels(solid) => Surface::of_tri_dexels(solid),
-            Self::Mesh(_) => Surface::of_triangles(triangles),
+    /// The surface, to be compared: of a mesh as `triangles`, which are those of it, with its faces if they are known.
+    pub fn to_compare<'a>(
+        &'a self,
+        triangles: &'a TriangleSoup,
+        faces: Option<&'a TargetFaces>,
+    ) -> Result<Surface<'a>, MeshError> {
+        match (self, faces) {
+            (Self::Dexels(dexels), _) => Surface::of_dexels(dexels),
+            (Self::TriDexels(solid), _) => Surface::of_tri_dexels(solid),
+            (Self::Mesh(_), Some(faces)) => Surface::of_faces(triangles, &faces.surfaces),
+            (Self::Mesh(_), None) => Surface::of_triangles(triangles),
         }
+    }
+
+    /// The same solid, if its coordinates are those of `frame`; dexels stay as they are, as `None`.
+    pub fn placed(&self, frame: &Frame) -> Option<Self> {
+        let Self::Mesh(mesh) = self else { return None };
+        let mut placed = mesh.clone();
+        placed.vertices.iter_mut().for_each(|p| *p = frame.to_world(*p));
+        for normal in &mut placed.normals {
+            *normal = frame.turn_to_world(normal.map(f64::from)).map(|c| c as f32);
+        }
+        Some(Self::Mesh(placed))
     }
 
     /// A mesh as dexels on a grid; dexels are returned as they are, of three sets the one along z.

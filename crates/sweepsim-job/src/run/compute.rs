@@ -1,6 +1,7 @@
 //! The dexels along z, and what is said of them.
 
 use crate::base::JobError;
+use crate::parts;
 use crate::request::Task;
 use crate::session::{Session, phase, reported};
 use crate::shards::Gathered;
@@ -111,6 +112,9 @@ pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     report.dexels.unresolved.clone_from(&done.unresolved);
     report.volume_removed = done.volume_removed;
     report.volume = Some(done.dexels.volume());
+    if let (Some(target), Some(shape)) = (&job.target, &done.target) {
+        parts::name_faces(report, target, shape);
+    }
     report.setups = report.setups.take().or_else(|| setups(job));
     report.notes.splice(0..0, session.plan.notes());
     report.warnings.splice(0..0, session.plan.warnings());

@@ -6,6 +6,7 @@ use super::{envelope, files};
 use crate::base::{Folder, JobError, Sink};
 use crate::frames;
 use crate::page::{self, PageSource};
+use crate::parts;
 use crate::request::{Output, Task};
 use crate::session::{self, Plan, Session};
 use crate::verify;
@@ -208,7 +209,7 @@ impl Outcome {
         if request.judging.moves {
             sink.write("moves.csv", &mut |file| write_moves_csv(&done.moves, file))?;
         }
-        let (mut picture, mut uncertified) = (None, 0);
+        let (mut picture, mut uncertified, mut sharp) = (None, 0, None);
         let surface = wants(Output::Mesh) || wants(Output::Picture);
         if surface || wants(Output::Tridexels) {
             let (solid, open) = files::solid(session, done, &mut report)?;
@@ -218,9 +219,16 @@ impl Outcome {
             }
             if surface {
                 let mesh = files::mesh(solid.as_ref(), session, done, &mut report)?;
-                drop(solid);
                 picture = files::write_mesh(&mesh, session, outputs, sink, &mut report)?;
+                sharp = solid.filter(|_| wants(Output::Report)).map(|solid| (solid, mesh));
             }
+        }
+        if let (Some(target), true) = (&session.job.target, done.target.is_some() && wants(Output::Report)) {
+            let solid = sharp.as_ref().map(|(solid, _)| solid);
+            let found = session::phase(&mut report, "faces", || {
+                parts::of_part(target, &done.dexels, solid, session.job.tolerance)
+            });
+            report.faces = found.map_err(|error| session.failure(format!("target: {error}")))?;
         }
         if let Some(count) = request.frames {
             let stock = session::stock(session)?;
@@ -241,6 +249,7 @@ impl Outcome {
                 session,
                 report: &report,
                 dexels: &done.dexels,
+                solid: sharp.as_ref().map(|(solid, mesh)| (solid, mesh)),
                 target: done.target.as_ref(),
                 moves: &done.moves,
                 threads: rayon::current_num_threads(),

@@ -4,6 +4,7 @@ use super::arrays::{Arrays, Entry, Scale};
 use super::layers::{self, CourseHead, HEIGHTS, LayerHead};
 use super::machine::{self, MachineHead};
 use super::others::{self, MeshHead, TrackHead};
+use super::surface::{self, SurfaceHead};
 use crate::scene::{DexelLayer, KeyFrame, Scene};
 use serde::Serialize;
 
@@ -17,6 +18,7 @@ pub(crate) struct Head {
     limits: Option<[f64; 2]>,
     frame: [[f64; 3]; 4],
     part: LayerHead,
+    surface: Option<SurfaceHead>,
     course: Option<CourseHead>,
     track: Option<TrackHead>,
     meshes: MeshHead,
@@ -34,6 +36,8 @@ pub(crate) struct Embedded {
     pub bytes: Vec<u8>,
     /// The step of heights, in millimetres.
     pub step: f64,
+    /// Whether the surface of the part is there.
+    pub has_surface: bool,
     /// What was left out for want of space.
     pub left_out: Vec<String>,
 }
@@ -64,11 +68,13 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     if let Some((_, arrays)) = &machine {
         fixed.append(arrays);
     }
+    // All deviations have one step.
+    let deviation = layers::deviation_step(scene);
     let mut left_out = Vec::new();
     let fits = |parts: &[&Arrays]| encoded(parts.iter().map(|part| part.bytes.len()).sum()) <= most;
 
     // The part as fine as it is, with normals if they fit.
-    let mut part = Part::new(&scene.part, scene.limits, &height);
+    let mut part = Part::new(&scene.part, deviation, &height);
     let mut normals = layers::normals(&scene.part);
     let mut coarser = None::<DexelLayer>;
     if !fits(&[&fixed, &part.arrays, &normals]) {
@@ -82,12 +88,21 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
             break;
         }
         let half = before.halved();
-        part = Part::new(&half, scene.limits, &height);
+        part = Part::new(&half, deviation, &height);
         coarser = Some(half);
         nth *= 2;
     }
     if nth > 1 {
         left_out.push(format!("all but every {nth}th line along x and y"));
+    }
+    let mut sharp = scene.surface.as_ref().map(|own| surface::surface(own, deviation));
+    if let Some((_, arrays)) = &sharp {
+        if fits(&[&fixed, &part.arrays, &normals, arrays]) {
+            fixed.append(arrays);
+        } else {
+            left_out.push("the surface between the lines".to_owned());
+            sharp = None;
+        }
     }
     let (mut kept, mut names) = (texts, programs);
     if !fits(&[&fixed, &part.arrays, &normals, &kept]) {
@@ -99,7 +114,7 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     if let Some(course) = course {
         let mut frames: Vec<KeyFrame> = course.frames.clone();
         loop {
-            let (head, arrays) = layers::course(course, &frames, &height);
+            let (head, arrays) = layers::course(course, &frames, &height, deviation);
             if fits(&[&fixed, &part.arrays, &normals, &kept, &arrays]) {
                 shown = Some((head, arrays));
                 break;
@@ -125,10 +140,11 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     });
     let head = Head {
         height,
-        deviation: part.deviation,
+        deviation,
         limits: scene.limits,
         frame: scene.frame,
         part: part.head,
+        surface: sharp.map(|(head, _)| head),
         course,
         track: track.map(|(head, _)| head),
         meshes,
@@ -139,6 +155,7 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         arrays: all.entries,
     };
     Embedded {
+        has_surface: head.surface.is_some(),
         head,
         bytes: all.bytes,
         step: height.step,
@@ -150,21 +167,18 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
 struct Part {
     head: LayerHead,
     arrays: Arrays,
-    deviation: Option<f64>,
 }
 
 impl Part {
-    fn new(layer: &DexelLayer, limits: Option<[f64; 2]>, height: &Scale) -> Self {
+    fn new(layer: &DexelLayer, deviation: Option<f64>, height: &Scale) -> Self {
         let mut arrays = layers::material(layer, height, ["part.counts", "lower", "upper"]);
         arrays.append(&layers::makers(layer));
-        let deviation = layers::deviation_step(layer, limits);
         if let Some(step) = deviation {
-            arrays.append(&layers::deviations(layer, step));
+            arrays.append(&layers::deviations(layer, step, ["lower.deviation", "upper.deviation"]));
         }
         Self {
             head: LayerHead::new(layer.area),
             arrays,
-            deviation,
         }
     }
 }

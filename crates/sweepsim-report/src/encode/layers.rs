@@ -1,9 +1,10 @@
 //! The part, and the workpiece during the program.
 
 use super::arrays::{Arrays, Scale, octahedron};
-use crate::scene::{Area, Course, DexelLayer, KeyFrame, LayerEnd};
+use crate::scene::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Steps of heights: 16 bits.
 pub(crate) const HEIGHTS: u32 = 65_535;
@@ -68,28 +69,38 @@ pub(crate) fn normals(layer: &DexelLayer) -> Arrays {
     arrays
 }
 
-/// The step of deviations: fine beside the limits, but the greatest fits. `None` if no deviation is known.
-pub(crate) fn deviation_step(layer: &DexelLayer, limits: Option<[f64; 2]>) -> Option<f64> {
-    let known = layer.intervals.iter().flatten().map(|end| f64::from(end.deviation));
-    let known = known.filter(|deviation| deviation.is_finite());
+/// The step of deviations: fine beside the limits, but the greatest of the part fits. `None` if none is known.
+pub(crate) fn deviation_step(scene: &Scene) -> Option<f64> {
+    let of_lines = scene.part.intervals.iter().flatten().map(|end| end.deviation);
+    let of_surface = scene
+        .surface
+        .iter()
+        .flat_map(|surface| surface.deviations.iter().copied());
+    let known = of_lines
+        .chain(of_surface)
+        .map(f64::from)
+        .filter(|deviation| deviation.is_finite());
     let greatest = known.fold(None, |most: Option<f64>, d| Some(most.unwrap_or(0.0).max(d.abs())))?;
-    let limit = limits.map_or(0.0, |[gouge, excess]| gouge.min(excess));
+    let limit = scene.limits.map_or(0.0, |[gouge, excess]| gouge.min(excess));
     let fine = if limit > 0.0 { (limit / 16.0).min(1e-3) } else { 1e-3 };
     Some(fine.max(greatest / 32_767.0))
 }
 
-pub(crate) fn deviations(layer: &DexelLayer, step: f64) -> Arrays {
-    let packed = |end: &LayerEnd| {
-        if end.deviation.is_finite() {
-            ((f64::from(end.deviation) / step).round() as i16).max(UNKNOWN + 1)
-        } else {
-            UNKNOWN
-        }
-    };
+/// A deviation in steps. What is beyond them counts as the last.
+pub(crate) fn deviation(deviation: f32, step: f64) -> i16 {
+    if deviation.is_finite() {
+        ((f64::from(deviation) / step).round() as i16).max(UNKNOWN + 1)
+    } else {
+        UNKNOWN
+    }
+}
+
+pub(crate) fn deviations(layer: &DexelLayer, step: f64, names: [&'static str; 2]) -> Arrays {
+    let packed = |end: &LayerEnd| deviation(end.deviation, step);
     let [lower, upper] = halves(layer.intervals.iter().map(|[a, b]| [packed(a), packed(b)]));
     let mut arrays = Arrays::default();
-    arrays.i16("lower.deviation", &lower);
-    arrays.i16("upper.deviation", &upper);
+    arrays.i16(names[0], &lower);
+    arrays.i16(names[1], &upper);
     arrays
 }
 
@@ -112,18 +123,18 @@ pub(crate) struct CourseHead {
 /// Pairs of moments joined: half as many.
 pub(crate) fn thinned(frames: &[KeyFrame]) -> Vec<KeyFrame> {
     let joined = |pair: &[KeyFrame]| {
-        let mut lines: BTreeMap<u32, &[[f64; 2]]> = BTreeMap::new();
+        let mut lines: BTreeMap<u32, (&KeyFrame, Range<usize>)> = BTreeMap::new();
         for frame in pair {
-            let mut rest = frame.intervals.as_slice();
+            let mut at = 0;
             for (line, count) in frame.lines.iter().zip(&frame.counts) {
-                let (own, others) = rest.split_at(usize::from(*count));
-                lines.insert(*line, own);
-                rest = others;
+                let own = at..at + usize::from(*count);
+                at = own.end;
+                lines.insert(*line, (frame, own));
             }
         }
         let mut joined = KeyFrame::new(pair[pair.len() - 1].clock);
-        for (line, intervals) in lines {
-            joined.push(line, intervals.iter().copied());
+        for (line, (frame, own)) in lines {
+            joined.push_measured(line, own.map(|k| (frame.intervals[k], frame.deviations[k])));
         }
         joined
     };
@@ -134,8 +145,8 @@ pub(crate) fn thinned(frames: &[KeyFrame]) -> Vec<KeyFrame> {
     thin
 }
 
-/// The stock and all changes.
-pub(crate) fn course(course: &Course, frames: &[KeyFrame], scale: &Scale) -> (CourseHead, Arrays) {
+/// The stock and all changes; with deviations, if there is a step of them.
+pub(crate) fn course(course: &Course, frames: &[KeyFrame], scale: &Scale, step: Option<f64>) -> (CourseHead, Arrays) {
     let mut arrays = material(&course.start, scale, ["start.counts", "start.lower", "start.upper"]);
     let sizes: Vec<u32> = frames.iter().map(|frame| frame.lines.len() as u32).collect();
     let lines: Vec<u32> = frames.iter().flat_map(|frame| frame.lines.iter().copied()).collect();
@@ -147,6 +158,17 @@ pub(crate) fn course(course: &Course, frames: &[KeyFrame], scale: &Scale) -> (Co
     arrays.u16("frames.counts", &counts);
     arrays.u16("frames.lower", &lower);
     arrays.u16("frames.upper", &upper);
+    if let Some(step) = step {
+        arrays.append(&deviations(
+            &course.start,
+            step,
+            ["start.lower.deviation", "start.upper.deviation"],
+        ));
+        let all = frames.iter().flat_map(|frame| &frame.deviations);
+        let [lower, upper] = halves(all.map(|ends| ends.map(|end| deviation(end, step))));
+        arrays.i16("frames.lower.deviation", &lower);
+        arrays.i16("frames.upper.deviation", &upper);
+    }
     let head = CourseHead {
         layer: LayerHead::new(course.start.area),
         clocks: frames.iter().map(|frame| frame.clock).collect(),

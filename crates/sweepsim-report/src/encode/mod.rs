@@ -7,5 +7,6 @@ mod fit;
 mod layers;
 mod machine;
 mod others;
+mod surface;
 
 pub(crate) use fit::{Embedded, embed};

@@ -2,7 +2,9 @@
 
 use crate::decoder::Data;
 use proptest::prelude::*;
-use sweepsim_report::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Page, ProgramText, Scene, Track, TrackPoint};
+use sweepsim_report::{
+    Area, Course, DexelLayer, KeyFrame, LayerEnd, Page, ProgramText, Scene, Surface, Track, TrackPoint,
+};
 
 type Lines = Vec<Vec<[LayerEnd; 2]>>;
 
@@ -95,6 +97,9 @@ proptest! {
     fn the_course_comes_back(start in lines(12), changes in prop::collection::vec(prop::collection::btree_map(0_u32..12, lines(1), 1..5), 1..9), few in any::<bool>()) {
         let area = Area { min: [0.0; 2], max: [4.0, 3.0], cells: [4, 3] };
         let heights = |line: &[[LayerEnd; 2]]| line.iter().map(|ends| ends.map(|end| end.z)).collect::<Vec<_>>();
+        let measured = |line: &[[LayerEnd; 2]]| line.iter().map(|ends| (ends.map(|end| end.z), ends.map(|end| end.deviation))).collect::<Vec<_>>();
+        // Without joining, every end that is embedded is known.
+        let pushed: Vec<[f32; 2]> = changes.iter().flatten().flat_map(|(_, own)| own[0].iter().map(|ends| ends.map(|end| end.deviation))).collect();
         let mut state: Vec<Vec<[f64; 2]>> = start.iter().map(|line| heights(line)).collect();
         let mut states = vec![state.clone()];
         let mut frames = Vec::new();
@@ -102,7 +107,7 @@ proptest! {
             let mut frame = KeyFrame::new(n as f64 + 1.0);
             for (line, own) in change {
                 state[*line as usize] = heights(&own[0]);
-                frame.push(*line, state[*line as usize].iter().copied());
+                frame.push_measured(*line, measured(&own[0]));
             }
             frames.push(frame);
             states.push(state.clone());
@@ -121,7 +126,7 @@ proptest! {
                 for (n, change) in changes.iter().enumerate() {
                     let mut frame = KeyFrame::new(n as f64 + 1.0);
                     for (line, own) in change {
-                        frame.push(*line, heights(&own[0]));
+                        frame.push_measured(*line, measured(&own[0]));
                     }
                     again.push(frame);
                 }
@@ -155,7 +160,112 @@ proptest! {
             }
         }
         prop_assert_eq!((at, k), (data.array("frames.line").len(), data.array("frames.lower").len()));
+        if data.has("frames.lower.deviation") {
+            let step = data.number("/deviation");
+            prop_assert_eq!(data.array("start.lower.deviation").len(), data.array("start.lower").len());
+            prop_assert_eq!(data.array("frames.upper.deviation").len(), k);
+            for (k, own) in pushed.iter().enumerate().filter(|_| clocks.len() == changes.len()) {
+                for (name, deviation) in ["frames.lower.deviation", "frames.upper.deviation"].iter().zip(own) {
+                    let steps = data.array(name)[k];
+                    // What the start does not reach is cut off at the last step.
+                    let error = (steps as f64 * step - f64::from(*deviation)).abs();
+                    let good = if deviation.is_nan() { steps == -32_768 } else { error <= 0.5001 * step || steps.abs() == 32_767 };
+                    prop_assert!(good, "{} and {}", steps, deviation);
+                }
+            }
+        } else {
+            prop_assert!(start.iter().flatten().flatten().all(|end| end.deviation.is_nan()));
+        }
     }
+}
+
+/// Corners come back to half a step, deviations too, and what made each triangle exactly; triangles without a corner
+/// are left out.
+#[test]
+fn the_surface_comes_back() {
+    let place = |n: u32| {
+        [
+            f64::from(n % 7) * 1.3,
+            f64::from(n / 7) * 0.7 - 2.0,
+            f64::from(n * n % 11),
+        ]
+    };
+    let count = 49;
+    let mut surface = Surface {
+        vertices: (0..count).map(place).collect(),
+        normals: (0..count)
+            .map(|n| if n % 2 == 0 { [0.0, 0.6, 0.8] } else { [1.0, 0.0, 0.0] })
+            .collect(),
+        deviations: (0..count)
+            .map(|n| if n % 5 == 0 { f32::NAN } else { n as f32 * 0.01 - 0.2 })
+            .collect(),
+        whole: 500,
+        farthest: 0.25,
+        ..Surface::default()
+    };
+    for n in 0..40 {
+        surface.triangles.push([n, n + 1, n + 8]);
+        surface.makers.push(n % 3);
+        surface.triangles.push([n, n + 8, n + 7]);
+        surface.makers.push(100 + n);
+    }
+    surface.triangles.push([0, 1, count]);
+    surface.makers.push(9);
+    let mut page = Page::new("surface");
+    let area = Area {
+        min: [0.0; 2],
+        max: [1.0; 2],
+        cells: [1, 1],
+    };
+    let mut scene = Scene::new(DexelLayer::new(area, |_, _, _| {}));
+    scene.limits = Some([0.02, 0.1]);
+    scene.surface = Some(surface.clone());
+    page.scene = Some(scene);
+    let html = page.html();
+    assert!(html.contains("The part is drawn by 81 triangles of 500, from which the farthest corner is 0.25 mm."));
+    let data = Data::of(&html);
+    assert_eq!(
+        (data.number("/surface/triangles"), data.number("/surface/farthest")),
+        (80.0, 0.25)
+    );
+    let corners = data.array("surface.corners");
+    let step = data.number("/deviation");
+    for (n, own) in corners.chunks(3).enumerate() {
+        let old = surface.triangles[n];
+        assert_eq!(
+            data.array("surface.maker")[own[2] as usize],
+            i64::from(surface.makers[n]),
+            "{n}"
+        );
+        // The same triangle, the same way round.
+        let place = |v: i64| {
+            ["x", "y", "z"].map(|name| {
+                let k = name.as_bytes()[0] - b'x';
+                let scale = |field: &str| data.number(&format!("/surface/places/{k}/{field}"));
+                scale("from") + data.array(&format!("surface.{name}"))[v as usize] as f64 * scale("step")
+            })
+        };
+        let is_near = |v: i64, old: u32| (0..3).all(|k| (place(v)[k] - surface.vertices[old as usize][k]).abs() < 1e-3);
+        let turn = (0..3).find(|turn| (0..3).all(|k| is_near(own[k], old[(k + turn) % 3])));
+        let turn = turn.unwrap_or_else(|| panic!("triangle {n}"));
+        for k in 0..3 {
+            let steps = data.array("surface.deviation")[own[k] as usize];
+            let deviation = f64::from(surface.deviations[old[(k + turn) % 3] as usize]);
+            let good = if deviation.is_nan() {
+                steps == -32_768
+            } else {
+                (steps as f64 * step - deviation).abs() <= 0.5001 * step
+            };
+            assert!(good, "{steps} and {deviation}");
+        }
+    }
+    assert_eq!(corners.len(), 240);
+    // Few corners need a copy.
+    assert!(
+        data.array("surface.x").len() < 49 + 40,
+        "{}",
+        data.array("surface.x").len()
+    );
 }
 
 #[test]

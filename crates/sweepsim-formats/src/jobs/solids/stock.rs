@@ -7,10 +7,14 @@ use sweepsim_nc::Note;
 
 use crate::dexels::{DexelFormat, read_dexels_file, read_tri_dexels_file};
 use crate::error::{FormatError, Problem};
+use crate::jobs::judging::TargetFaces;
 use crate::jobs::place::Step;
 use crate::jobs::read::JobReader;
 use crate::jobs::schema;
 use crate::meshes::{Colour, MeshFormat, read_coloured_mesh_file, read_step, read_stl};
+
+/// Triangles, the colour of each, and the faces of a STEP file.
+type FileMesh = (TriangleSoup, Vec<Option<Colour>>, Option<TargetFaces>);
 
 impl JobReader<'_> {
     /// The stock, or a part of it, that the steps lead to.
@@ -120,6 +124,17 @@ impl JobReader<'_> {
         what: &'static str,
         steps: &[Step],
     ) -> Result<(TriangleSoup, Vec<Option<Colour>>), FormatError> {
+        self.mesh_with_faces(name, what, steps)
+            .map(|(mesh, colours, _)| (mesh, colours))
+    }
+
+    /// The same, with the faces of a STEP file.
+    pub(crate) fn mesh_with_faces(
+        &self,
+        name: &str,
+        what: &'static str,
+        steps: &[Step],
+    ) -> Result<FileMesh, FormatError> {
         let file = self.beside(name, steps)?;
         if MeshFormat::of(&file) == Some(MeshFormat::Step) {
             // Its unit is in the file.
@@ -133,7 +148,8 @@ impl JobReader<'_> {
             let notes = notes.map(|note| Note::new(line, format!("the {what} {name}: {note}")));
             self.read.borrow_mut().extend(notes);
             let colours = part.colours();
-            return Ok((part.mesh.soup().unwrap_or_default(), colours));
+            let faces = TargetFaces::of(&part);
+            return Ok((part.mesh.soup().unwrap_or_default(), colours, Some(faces)));
         }
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
         let (mesh, colours) = if known {
@@ -150,6 +166,6 @@ impl JobReader<'_> {
                 triangles: scaled.collect(),
             }
         };
-        Ok((mesh, colours))
+        Ok((mesh, colours, None))
     }
 }

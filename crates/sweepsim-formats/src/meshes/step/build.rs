@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use kentron::geometry::ParametricCurve;
 use kentron::geometry::surface::Surface;
 use kentron::io::step::Node;
-use kentron::math::{Point, Transform, Transformable};
+use kentron::math::{Direction, Point, Transform, Transformable, Vector};
 use kentron::meshing::{MeshOptions, mesh_with};
 use kentron::topology::{Model, NodeKind, Orientation, Shape};
-use sweepsim_dexel::TriangleSoup;
+use sweepsim_dexel::{AnalyticSurface, TriangleSoup};
 
 use super::fill;
 
@@ -38,6 +38,8 @@ pub(super) struct Placed {
     pub volume: Option<f64>,
     /// The kind of each of its faces, by entity.
     pub kinds: BTreeMap<usize, &'static str>,
+    /// The surfaces of those that are planes, cylinders, cones, spheres and tori.
+    pub surfaces: BTreeMap<usize, AnalyticSurface>,
 }
 
 impl Placed {
@@ -164,7 +166,11 @@ impl Found {
             if mesh.triangles().is_empty() {
                 return Err(format!("face #{number} could not be meshed: it has no area"));
             }
-            body.kinds.insert(number, model.surface(unplaced).map_or("face", kind));
+            let surface = model.surface(unplaced);
+            body.kinds.insert(number, surface.map_or("face", kind));
+            if let Some(surface) = surface.and_then(|surface| analytic(&surface.transformed(&face.placement))) {
+                body.surfaces.insert(number, surface);
+            }
             let corner = |p: &Point| {
                 let placed = p.transformed(&face.placement);
                 [placed.x, placed.y, placed.z]
@@ -238,4 +244,37 @@ fn kind(surface: &Surface) -> &'static str {
         Surface::Offset(_) => "offset surface",
         Surface::Trimmed(_) => "trimmed surface",
     }
+}
+
+/// The surface in numbers, if few say what it is.
+fn analytic(surface: &Surface) -> Option<AnalyticSurface> {
+    let point = |p: Point| [p.x, p.y, p.z];
+    let direction = |d: Direction| point(Point::ORIGIN + Vector::from(d));
+    Some(match surface {
+        Surface::Plane(plane) => AnalyticSurface::Plane {
+            origin: point(plane.frame().origin()),
+            normal: direction(plane.frame().z()),
+        },
+        Surface::Cylinder(cylinder) => AnalyticSurface::Cylinder {
+            origin: point(cylinder.frame().origin()),
+            axis: direction(cylinder.frame().z()),
+            radius: cylinder.radius(),
+        },
+        Surface::Cone(cone) => AnalyticSurface::Cone {
+            apex: point(cone.apex()),
+            axis: direction(cone.frame().z()).map(|c| c * cone.semi_angle().signum()),
+            angle: cone.semi_angle().abs(),
+        },
+        Surface::Sphere(sphere) => AnalyticSurface::Sphere {
+            centre: point(sphere.frame().origin()),
+            radius: sphere.radius(),
+        },
+        Surface::Torus(torus) => AnalyticSurface::Torus {
+            centre: point(torus.frame().origin()),
+            axis: direction(torus.frame().z()),
+            major: torus.major_radius(),
+            minor: torus.minor_radius(),
+        },
+        _ => return None,
+    })
 }

@@ -233,6 +233,7 @@ impl File<'_> {
                 body: place,
                 name: self.scan.face_name(self.text, *entity),
                 kind,
+                surface: body.surfaces.get(entity).copied(),
                 colour: self.faces.get(entity).and_then(|face| face.colour),
             });
         }

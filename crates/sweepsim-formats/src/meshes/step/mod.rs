@@ -27,7 +27,7 @@ mod units;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use sweepsim_dexel::Mesh;
+use sweepsim_dexel::{AnalyticSurface, FaceSurfaces, Mesh};
 
 use crate::error::{FormatError, Problem};
 use crate::meshes::Colour;
@@ -79,10 +79,12 @@ pub struct StepFace {
     pub entity: usize,
     /// The place of its body in the list of bodies.
     pub body: usize,
-    /// Its name.
+    /// Its name, if it has one: names need not be unique.
     pub name: Option<String>,
     /// What it is part of: `plane`, `cylinder`, `cone`, `sphere`, `torus`, or another kind of surface.
     pub kind: &'static str,
+    /// That surface, if it is one of the first five.
+    pub surface: Option<AnalyticSurface>,
     /// Its colour, or that of its shell or body.
     pub colour: Option<Colour>,
 }
@@ -103,7 +105,41 @@ pub struct StepBody {
     pub faces: BTreeMap<&'static str, usize>,
 }
 
+impl StepFace {
+    /// A face of the first body, without a colour.
+    #[must_use]
+    pub fn new(entity: usize, name: Option<String>, kind: &'static str, surface: Option<AnalyticSurface>) -> Self {
+        Self {
+            entity,
+            body: 0,
+            name,
+            kind,
+            surface,
+            colour: None,
+        }
+    }
+
+    /// Whether this is its name, or its number in the file, as `#123`.
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name.as_deref() == Some(name) || name.strip_prefix('#') == Some(&self.entity.to_string())
+    }
+
+    /// What it is called: by its name, or by its number in the file, as `#123`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        self.name.clone().unwrap_or_else(|| format!("#{}", self.entity))
+    }
+}
+
 impl StepPart {
+    /// The faces of the triangles with their surfaces.
+    #[must_use]
+    pub fn surfaces(&self) -> FaceSurfaces {
+        let surfaces = self.faces.iter().map(|face| face.surface).collect();
+        FaceSurfaces::new(self.face_of.clone(), surfaces, self.deviation.max(self.chord))
+    }
+
     /// The colour of each triangle, if it has one.
     #[must_use]
     pub fn colours(&self) -> Vec<Option<Colour>> {

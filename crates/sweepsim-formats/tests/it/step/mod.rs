@@ -1,6 +1,7 @@
 //! STEP files: shapes whose measures are known, and files with a fault.
 
 mod faults;
+mod surfaces;
 mod writer;
 
 use std::f64::consts::PI;

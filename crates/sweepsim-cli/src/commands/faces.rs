@@ -1,0 +1,34 @@
+//! The faces of a target that is a STEP file, and how the part deviates on them.
+
+use sweepsim_formats::FaceDeviation;
+use sweepsim_job::words;
+
+/// The most faces that are listed.
+const FACES: usize = 20;
+
+/// A line for each face on which the part deviates, the worst first; for all if they are few.
+pub(super) fn by_face(faces: &[FaceDeviation], file: &str, line: &mut impl FnMut(&str, &str)) {
+    let deviates = |face: &&FaceDeviation| face.gouge > 0.0 || face.excess > 0.0;
+    let mut listed: Vec<&FaceDeviation> = faces
+        .iter()
+        .filter(|face| faces.len() <= FACES || deviates(face))
+        .collect();
+    listed.sort_by(|a, b| b.gouge.max(b.excess).total_cmp(&a.gouge.max(a.excess)));
+    for face in listed.iter().take(FACES) {
+        let [gouge, excess, mean, rms] = [face.gouge, face.excess, face.mean, face.rms].map(length);
+        let area = words::measure(face.area);
+        let what = format!(
+            "{} ({}): gouge {gouge}, excess {excess}, mean {mean}, RMS {rms} mm, over {area} mm²",
+            face.face, face.kind
+        );
+        line("face", &what);
+    }
+    if listed.len() > FACES {
+        line("", &format!("… and {} more, all in {file}", listed.len() - FACES));
+    }
+}
+
+/// A distance. Values below the rounding errors of millimetres in `f64` are shown as 0.
+pub(super) fn length(value: f64) -> String {
+    words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
+}

@@ -1,0 +1,94 @@
+//! Faces with their names and surfaces: distances from what a file describes, and limits by face.
+
+use super::writer::Writer;
+use super::{block, read_at};
+use std::fs;
+use sweepsim_dexel::{AnalyticSurface, DistanceTo};
+use sweepsim_formats::{Job, RegionPlace, parse_step};
+
+/// A bar of 5 mm in radius, with triangles that are 0.2 mm from it, measures 5.0000 anywhere.
+#[test]
+fn a_coarse_bar_is_as_round_as_its_file_says() {
+    let mut file = Writer::new(false);
+    let faces = file.cylinder_faces([1.0, 2.0, -3.0], 5.0, 8.0);
+    let solid = file.solid("bar", &faces);
+    file.product("part", &[solid]);
+    let part = parse_step(file.text().as_bytes(), 0.2).unwrap();
+    let side = part.faces.iter().find(|face| face.is_called("side")).unwrap();
+    let Some(AnalyticSurface::Cylinder { origin, axis, radius }) = side.surface else {
+        panic!("{side:?}")
+    };
+    assert_eq!((origin[0], origin[1], axis, radius), (1.0, 2.0, [0.0, 0.0, 1.0], 5.0));
+    let soup = part.mesh.soup().unwrap();
+    let coarse = DistanceTo::new(&soup).unwrap();
+    let exact = coarse.clone().with_surfaces(part.surfaces());
+    let mut worst = [0.0_f64; 2];
+    for n in 0..500 {
+        let turn = f64::from(n) * 0.7;
+        let p = [
+            1.0 + 5.0 * turn.cos(),
+            2.0 + 5.0 * turn.sin(),
+            -2.0 + 0.012 * f64::from(n),
+        ];
+        for (tree, worst) in [&coarse, &exact].into_iter().zip(&mut worst) {
+            *worst = worst.max(tree.nearest(p).unwrap().distance.abs());
+        }
+    }
+    assert!(worst[0] > 0.03 && worst[1] < 1e-12, "{worst:?}");
+    // Above the top, its plane counts.
+    assert!((exact.nearest([1.0, 2.5, 6.5]).unwrap().distance - 1.5).abs() < 1e-12);
+}
+
+/// Faces of placed parts are where the part is: all six planes of a block in an assembly, in inches.
+#[test]
+fn surfaces_are_placed_with_their_bodies() {
+    let part = parse_step(super::assembly().text().as_bytes(), 0.01).unwrap();
+    let soup = part.mesh.soup().unwrap();
+    let surfaces = part.surfaces();
+    let mut seen = 0;
+    for (number, corners) in soup.triangles.iter().enumerate() {
+        let surface = surfaces.of_triangle(number).unwrap();
+        for p in corners {
+            // Corners are on edges, so on the surfaces; numbers of the file are in inches.
+            let (distance, _) = surface.distance(*p).unwrap();
+            assert!(distance.abs() < 1e-9, "{distance} of {surface:?}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 50, "{seen}");
+}
+
+#[test]
+fn limits_may_be_those_of_a_face() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.step"), block([0.0; 3], [8.0, 6.0, 4.0])).unwrap();
+    let top = read_at(&folder.path().join("part.step"), 0.01);
+    let top = top.faces.iter().find(|face| face.is_called("top")).unwrap();
+    assert_eq!(top.label(), "top");
+    let number = format!("#{}", top.entity);
+    let job = |face: &str| {
+        let text = format!(
+            "Job(\n    stock: Block(min: (0, 0, 0), max: (8, 8, 8)),\n    tools: {{}},\n    paths: [],\n    target: Mesh(\"part.step\"),\n    \
+             limits: Limits(gouge: 0.02, excess: 0.1, regions: [Region(name: \"seat\", {face}, gouge: 0.01, excess: 0)]),\n)"
+        );
+        Job::parse(&text, &folder.path().join("job.ron"))
+    };
+    for name in ["top", &number] {
+        let read = job(&format!("face: \"{name}\"")).unwrap();
+        let limits = read.limits.unwrap();
+        assert_eq!(limits.regions[0].place, RegionPlace::Face(name.to_owned()));
+        let parts = read.target.unwrap().by_region(&limits);
+        assert_eq!((parts[0].triangles.len(), parts[1].triangles.len()), (10, 2), "{name}");
+        assert!(parts[1].triangles.iter().flatten().all(|p| p[2] == 4.0));
+    }
+    let none = job("face: \"lid\"").unwrap_err().to_string();
+    assert!(
+        none.contains("no surface of the target is left for region seat: expected a box, a colour or a face of it"),
+        "{none}"
+    );
+    let two = job("face: \"top\", colour: \"#ff0000\"").unwrap_err().to_string();
+    assert!(
+        two.contains("a region has one place: expected `within`, `colour` or `face`"),
+        "{two}"
+    );
+}
