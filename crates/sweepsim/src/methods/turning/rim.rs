@@ -109,8 +109,14 @@ impl<'a> RimSearch<'a> {
         left: &mut Leftover,
     ) -> Verdict {
         let Span { from, to, bounds, .. } = span;
-        if (bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP) || !self.is_convex([from, to], bounds) {
-            return Verdict::Long;
+        if !self.is_simple([from, to], bounds) {
+            // Where not even the ends are, no halves will do.
+            let is_simple = |end| self.is_simple([end, end], &self.motion.bounds([end, end]));
+            return if is_simple(from) || is_simple(to) {
+                Verdict::Long
+            } else {
+                Verdict::Intricate
+            };
         }
         let [a, b] = [from, to].map(|moment| Placed::new(moment, self.rim.height));
         let facing = Facing::new(self.rim, [&a, &b], bounds, searching.slack);
@@ -151,6 +157,11 @@ impl<'a> RimSearch<'a> {
             }
         });
         Verdict::Settled
+    }
+
+    /// Whether the plane of the circle is never steep, and `E` convex.
+    fn is_simple(&self, ends: [&Moment; 2], bounds: &Bounds) -> bool {
+        (bounds.rise[0] >= STEEP || bounds.rise[1] <= -STEEP) && self.is_convex(ends, bounds)
     }
 
     /// Of `E`.
