@@ -1,7 +1,8 @@
 //! A proof and what it is about, as the plain numbers that a checker takes.
 
 use crate::excess::Left;
-use crate::search::{Closest, Cutter, Enclosed, Piece, TOGETHER, Tree};
+use crate::motion::{Cutter, Piece};
+use crate::search::{Closest, Enclosed, TOGETHER, Tree};
 use crate::solid::Target;
 use nalgebra::Vector3;
 use sweepsim_check::{Claim, Course, Curve, Motion, Outline, Question, Scene, Witness, packed};

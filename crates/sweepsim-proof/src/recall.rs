@@ -3,10 +3,7 @@
 //! A search is asked for parts of a work one by one; what it answers follows from the question alone. So an answer may
 //! be kept by a digest of the question, and is the same whether it was kept or not.
 
-use crate::search::Cutter;
 use crate::statement::{OpenBox, Witness};
-use std::ops::Range;
-use sweepsim_motion::Move;
 
 /// A digest of a question.
 pub type QuestionDigest = [u8; 32];
@@ -79,29 +76,6 @@ impl Writing {
         self.floats(&own.low);
         self.floats(&own.high);
         self.floats(&[own.depth]);
-    }
-
-    /// Some moves of a cutter, and whatever else its pieces there follow from.
-    pub fn moves(&mut self, cutter: &Cutter, moves: Range<usize>, deviation: f64) {
-        self.number(moves.start);
-        self.number(moves.end);
-        self.floats(&[cutter.reach, deviation]);
-        let (path, first) = cutter.path.unpacked(moves.clone());
-        for number in moves.start..=moves.end {
-            let pose = path.pose(number - first);
-            self.floats(&pose.tip());
-            self.floats(&pose.axis());
-            if let Some(side) = pose.side() {
-                self.floats(&side);
-            }
-            let way = (number < moves.end).then(|| path.way(number - first));
-            if let Some(way) = way.filter(|way| *way != Move::default()) {
-                self.bytes(format!("{way:?}").as_bytes());
-            }
-        }
-        for other in cutter.others.iter().flat_map(|others| others.of(moves.clone())) {
-            self.bytes(format!("{other:?}").as_bytes());
-        }
     }
 }
 

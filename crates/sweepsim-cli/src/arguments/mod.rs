@@ -43,7 +43,7 @@ pub(crate) enum Command {
     ///
     /// Of several programs, each is judged for itself, into a folder of its own below --out. The exit status is the
     /// worst of them: 2, 1, 3, 0.
-    Verify(VerifyOptions),
+    Verify(Box<VerifyOptions>),
     /// Writes the volume that the tools of a job sweep, without stock: the same outputs.
     Sweep(JobOptions),
     /// Cuts the volume that the tools of a job sweep by a plane: a drawing and a table of points.

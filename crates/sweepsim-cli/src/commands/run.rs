@@ -7,9 +7,7 @@ use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim_formats::{Verdict, io_reason};
-use sweepsim_job::{
-    JobError, Merge, Outcome, Plan, Reused, ShardNumber, Sink, Task, Written, output_folder, words,
-};
+use sweepsim_job::{JobError, Merge, Outcome, Plan, Reused, ShardNumber, Sink, Task, Written, output_folder, words};
 
 /// How the process works, whatever it does.
 pub(super) struct Process {
@@ -119,7 +117,9 @@ impl Process {
         } else if !self.quiet {
             let total = self.start.elapsed().as_secs_f64();
             summary(done.outcome.plan(), report, &done.outputs, done.threads, total).print()?;
-            done.outcome.reused().map_or(Ok(()), |reused| reused_lines(&reused).print())
+            done.outcome
+                .reused()
+                .map_or(Ok(()), |reused| reused_lines(&reused).print())
         } else {
             Ok(())
         }

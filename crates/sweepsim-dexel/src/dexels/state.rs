@@ -1,7 +1,7 @@
 //! All that dexels know, as bytes: what is read again goes on exactly as what was written.
 //!
-//! Lines and intervals alone do not do. How exact the times of sources are depends on the table of moves of a chunk, and
-//! that on what happened to the chunk before.
+//! Lines and intervals alone do not do: how exact the times of sources are depends on the table of moves of a chunk,
+//! and that on what happened to the chunk before.
 //!
 //! Of each chunk: 0 if it has no material; otherwise 1, the number of intervals up to the end of each line, the bits of
 //! a time, the table of moves (path, segment) with its length before it, and the ends of all intervals, from the lower

@@ -11,7 +11,6 @@ pub use options::{DialectOptions, Judging, ProgramOptions, StockOption, SweepOpt
 pub use task::{Directions, Output, Task};
 
 use crate::base::JobError;
-use crate::base::cache::{Digest, RunCache};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use sweepsim::Options;
@@ -302,24 +301,6 @@ impl Request {
             .map(|file| file.clone())
             .chain(machine)
             .collect()
-    }
-
-    /// What earlier runs of this request have found, if that is to be used.
-    pub(crate) fn known(&self) -> Option<RunCache> {
-        let folder = self.cache.as_ref()?;
-        let name = self.input.name();
-        // Of a text, its name: it is what changes.
-        let request = Self {
-            input: Input::File(name.to_owned()),
-            given: Given::default(),
-            ..self.clone()
-        };
-        let notation = serde_json::to_string(&request).unwrap_or_default();
-        let key = Digest::of("request").bytes(notation.as_bytes()).key();
-        let number = key[..8].iter().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
-        let stem = name.file_stem().unwrap_or_default();
-        let name = crate::base::folder_name(&stem.to_string_lossy());
-        Some(RunCache::open(folder, &format!("{}-{number:016x}", name.display())))
     }
 
     fn files_mut(&mut self) -> Vec<&mut PathBuf> {

@@ -1,10 +1,10 @@
 //! What will be done: the request with everything read, found or guessed.
 
 use super::check;
-use crate::base::cache::RunCache;
+use crate::base::cache::{Digest, RunCache};
 use crate::base::kind::Kind;
-use crate::base::{JobError, check_room, least_memory};
-use crate::request::{Directions, Input, Output, ProgramOptions, Request, Task};
+use crate::base::{JobError, check_room, folder_name, least_memory};
+use crate::request::{Directions, Given, Input, Output, ProgramOptions, Request, Task};
 use crate::shards::PieceFile;
 use crate::warnings;
 use std::path::{Path, PathBuf};
@@ -59,7 +59,7 @@ impl Request {
         if let Some([gouge, excess]) = self.limits {
             job.limits = Some(Limits::new(gouge, excess));
         }
-        let cache = self.known();
+        let cache = known(&self);
         let plan = Plan {
             request: self,
             job,
@@ -78,6 +78,24 @@ impl Request {
         }
         Ok(plan)
     }
+}
+
+/// What earlier runs of a request have found, if that is to be used.
+fn known(request: &Request) -> Option<RunCache> {
+    let folder = request.cache.as_ref()?;
+    let name = request.input.name();
+    // Of a text, its name: it is what changes.
+    let named = Request {
+        input: Input::File(name.to_owned()),
+        given: Given::default(),
+        ..request.clone()
+    };
+    let notation = serde_json::to_string(&named).unwrap_or_default();
+    let key = Digest::of("request").bytes(notation.as_bytes()).key();
+    let number = key[..8].iter().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
+    let stem = name.file_stem().unwrap_or_default();
+    let name = folder_name(&stem.to_string_lossy());
+    Some(RunCache::open(folder, &format!("{}-{number:016x}", name.display())))
 }
 
 /// How many cells of nearly this side cover a grid. The grid itself refuses too many.

@@ -37,7 +37,9 @@ fn on_grid(
     grid: &Grid,
     make: impl Fn(Option<[Dexels; 3]>) -> Result<Target, TargetError>,
 ) -> Result<Target, TargetError> {
-    let Some(cache) = session.cache() else { return make(None) };
+    let Some(cache) = session.cache() else {
+        return make(None);
+    };
     let key = Digest::of("target").bytes(&session.digests().1).value(grid).key();
     if let Some(known) = cache.get(&key) {
         if let Some(lines) = read_lines(known, grid) {

@@ -59,7 +59,9 @@ fn program(random: &mut Random) -> Vec<String> {
 fn edit(lines: &mut Vec<String>, random: &mut Random, from: usize) -> usize {
     let at = from + random.below(lines.len() - 1 - from);
     let moves = |line: &str| line.starts_with("G1") || line.starts_with("G0");
-    let at = (at..lines.len() - 1).find(|at| moves(&lines[*at])).unwrap_or(lines.len() - 2);
+    let at = (at..lines.len() - 1)
+        .find(|at| moves(&lines[*at]))
+        .unwrap_or(lines.len() - 2);
     match random.below(4) {
         0 => lines.insert(at, format!("G1 X{} Z-1.2 F400", random.below(40))),
         1 => drop(lines.remove(at)),
@@ -93,7 +95,9 @@ const OUTPUTS: [Output; 5] = [
 fn request(folder: &Path) -> Request {
     let mut judging = Judging::default();
     judging.moves = true;
-    Request::from_file(folder.join("part.ron")).outputs(OUTPUTS).judging(judging)
+    Request::from_file(folder.join("part.ron"))
+        .outputs(OUTPUTS)
+        .judging(judging)
 }
 
 /// All outputs but for times and the page, which shows them.
@@ -161,7 +165,10 @@ fn caches_that_cannot_be_used_are_ignored() {
     let cache = folder.path().join("cache");
     written(folder.path(), &program(&mut Random(7)));
     same(folder.path(), "at first");
-    let files: Vec<_> = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let files: Vec<_> = fs::read_dir(&cache)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     let [file] = &files[..] else { panic!("{files:?}") };
     let bytes = fs::read(file).unwrap();
     let other = |at: usize| {
@@ -189,7 +196,12 @@ fn caches_that_cannot_be_used_are_ignored() {
     fs::write(&cache, "no folder").unwrap();
     let ([again, moves], notes, _) = same(folder.path(), "no folder");
     assert_eq!(again, moves);
-    assert!(notes.iter().any(|note| note.starts_with("the cache could not be written")), "{notes:?}");
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.starts_with("the cache could not be written")),
+        "{notes:?}"
+    );
 }
 
 /// A tool that is used only late, and another stock.
@@ -234,7 +246,10 @@ struct Patience(std::sync::atomic::AtomicUsize);
 impl sweepsim_job::Monitor for Patience {
     fn cancelled(&self) -> bool {
         use std::sync::atomic::Ordering::Relaxed;
-        self.0.fetch_update(Relaxed, Relaxed, |left| Some(left.saturating_sub(1))).unwrap() == 0
+        self.0
+            .fetch_update(Relaxed, Relaxed, |left| Some(left.saturating_sub(1)))
+            .unwrap()
+            == 0
     }
 }
 
@@ -247,7 +262,10 @@ fn the_file_is_replaced_as_a_whole() {
     let with = || request(folder.path()).cache(folder.path().join("cache"));
     let listed = || -> Vec<(std::path::PathBuf, Vec<u8>)> {
         let entries = fs::read_dir(folder.path().join("cache")).into_iter().flatten();
-        entries.map(|entry| entry.unwrap().path()).map(|file| (file.clone(), fs::read(file).unwrap())).collect()
+        entries
+            .map(|entry| entry.unwrap().path())
+            .map(|file| (file.clone(), fs::read(file).unwrap()))
+            .collect()
     };
     for questions in [1, 20, 100] {
         let found = with().plan().unwrap().run(&Patience(questions.into()));
@@ -262,7 +280,9 @@ fn the_file_is_replaced_as_a_whole() {
     assert!(with().plan().unwrap().run(&Patience(20.into())).is_err());
     assert!(listed() == before);
     std::thread::scope(|scope| {
-        let [a, b] = [0, 1].map(|_| scope.spawn(|| judged(with(), 1).1)).map(|run| run.join().unwrap());
+        let [a, b] = [0, 1]
+            .map(|_| scope.spawn(|| judged(with(), 1).1))
+            .map(|run| run.join().unwrap());
         assert!(a.0 == b.0);
     });
     assert_eq!(listed().len(), 1);

@@ -1,11 +1,11 @@
 //! Answers to looks at patches that are known: they follow from the moves that come near.
 //!
-//! A search asks what was removed around some points. It is kept with a box that holds all of these, and a digest of all
-//! stretches whose boxes meet it. If that is the same again, so is every answer within the search, and the search asks
-//! for the same points.
+//! A search asks what was removed around some points. It is kept with a box that holds all of these, and a digest of
+//! all stretches whose boxes meet it. If that is the same again, so is every answer within the search, and it asks for
+//! the same points.
 
+use super::found::Found;
 use super::removed::Removed;
-use super::search::Found;
 use crate::motion::Bounds;
 use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
 use nalgebra::Vector3;
@@ -37,7 +37,12 @@ impl<'a> Blocks<'a> {
                 });
                 all
             });
-            for (first, (hull, some)) in hulls.into_iter().flatten().zip(course.stretches.chunks(TOGETHER)).enumerate() {
+            for (first, (hull, some)) in hulls
+                .into_iter()
+                .flatten()
+                .zip(course.stretches.chunks(TOGETHER))
+                .enumerate()
+            {
                 let mut content = Writing::default();
                 content.number(number);
                 content.number(first);
@@ -54,7 +59,10 @@ impl<'a> Blocks<'a> {
 
     /// A digest of all stretches that may meet a box.
     fn around(&self, around: &Bounds) -> QuestionDigest {
-        let (low, high) = (around.low.map(|c| (c as f32).next_down()), around.high.map(|c| (c as f32).next_up()));
+        let (low, high) = (
+            around.low.map(|c| (c as f32).next_down()),
+            around.high.map(|c| (c as f32).next_up()),
+        );
         let mut near = Vec::new();
         for (own, digest) in &self.all {
             if (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]) {
@@ -102,33 +110,5 @@ pub(super) fn nothing() -> Bounds {
     Bounds {
         low: Vector3::repeat(f64::INFINITY),
         high: Vector3::repeat(f64::NEG_INFINITY),
-    }
-}
-
-impl Answer for Found {
-    fn write(&self, to: &mut Writing) {
-        to.list(self.highest.iter(), |to, (place, height)| {
-            to.floats(place.as_slice());
-            to.floats(&[*height]);
-        });
-        to.number(usize::from(self.is_left));
-        to.list(self.open.iter(), |to, [low, high]| {
-            to.floats(low);
-            to.floats(high);
-        });
-        to.number(self.open_count);
-        to.number(self.patches);
-        to.bytes(self.record.bytes());
-    }
-
-    fn read(from: &mut Reading) -> Option<Self> {
-        Some(Self {
-            highest: from.list(|from| Some((from.point()?.into(), from.float()?)))?.pop(),
-            is_left: from.number()? > 0,
-            open: from.list(|from| Some([from.point()?, from.point()?]))?,
-            open_count: from.number()?,
-            patches: from.number()?,
-            record: super::record::Record::of_bytes(from.bytes()?),
-        })
     }
 }

@@ -2,13 +2,15 @@
 
 mod look;
 
+use super::found::Found;
 use super::known::{Blocks, nothing};
 use super::record::{PatchTrees, Record, Step, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
 use super::surface::Patch;
+use crate::motion::Cutter;
 use crate::recall::{Recall, Writing};
-use crate::search::{Cutter, Limits};
+use crate::search::Limits;
 use crate::solid::Target;
 use look::Search;
 use nalgebra::Vector3;
@@ -155,41 +157,6 @@ struct Scene<'a> {
     /// The numbers of triangles by their corners, for records.
     numbers: HashMap<[u64; 9], u32>,
     recorded: bool,
-}
-
-/// What was found of a distance.
-#[derive(Default)]
-pub(super) struct Found {
-    pub highest: Option<(Vector3<f64>, f64)>,
-    /// Whether some of the surface is left.
-    pub is_left: bool,
-    pub open: Vec<[[f64; 3]; 2]>,
-    pub open_count: usize,
-    pub patches: usize,
-    pub record: Record,
-}
-
-impl Found {
-    fn height(&self) -> f64 {
-        self.highest.map_or(0.0, |(_, height)| height)
-    }
-
-    fn take(&mut self, place: Vector3<f64>, height: f64) {
-        if height > self.height() {
-            self.highest = Some((place, height));
-        }
-    }
-
-    fn join(mut self, other: Self) -> Self {
-        if let Some((place, height)) = other.highest {
-            self.take(place, height);
-        }
-        self.is_left |= other.is_left;
-        self.open.extend(other.open);
-        self.open_count += other.open_count;
-        self.patches += other.patches;
-        self
-    }
 }
 
 impl Scene<'_> {

@@ -43,7 +43,14 @@ impl Boxes {
 
     /// Boxes around what is swept in so many stretches each.
     pub fn hulls(&self, together: usize) -> Vec<[f32; 6]> {
-        let none = [f32::INFINITY, f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];
+        let none = [
+            f32::INFINITY,
+            f32::INFINITY,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::NEG_INFINITY,
+            f32::NEG_INFINITY,
+        ];
         let mut all = vec![none; self.stretches.div_ceil(together)];
         let everywhere = Vector3::repeat(f64::INFINITY);
         self.each(self.stretches, (&-everywhere, &everywhere), |stretch, own| {

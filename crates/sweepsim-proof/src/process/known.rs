@@ -1,7 +1,6 @@
 //! Answers to looks at ranges of moves that are known: they follow from all moves up to there.
 
-use super::scene::{Found, Room, Work};
-use super::search::TOGETHER;
+use super::scene::{Found, Room, TOGETHER, Work};
 use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
 
 /// Digests of all that is done up to the end of each range of moves, of all paths.
@@ -18,7 +17,7 @@ pub(super) fn prefixes(recall: &dyn Recall, work: &[Work], room: &Room) -> Vec<V
             let range = from..moves.min(from + TOGETHER);
             let mut question = Writing::default();
             question.0.extend(before);
-            question.moves(&own.cutter, range.clone(), room.deviation);
+            own.cutter.write(&mut question, range.clone(), room.deviation);
             question.0.extend(range.map(|number| u8::from((own.is_rapid)(number))));
             before = recall.digest(&question.0);
             before

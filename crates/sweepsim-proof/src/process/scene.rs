@@ -1,11 +1,14 @@
 //! All that a search for what touches material knows, and what it finds.
 
 use super::history::History;
-use crate::search::Cutter;
+use crate::motion::Cutter;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+
+/// So many moves are looked at together.
+pub(super) const TOGETHER: usize = 64;
 
 /// A path of a program, with all that moves along it.
 pub struct Work<'a> {

@@ -3,12 +3,11 @@
 use super::history::History;
 use super::known::prefixes;
 use super::samples::Turned;
-use super::scene::{Found, Movers, Room, Scene, Work};
+use super::scene::{Found, Movers, Room, Scene, TOGETHER, Work};
 use super::visit::Search;
 use crate::excess::{Before, Course};
-use crate::motion::{Run, Stretch};
+use crate::motion::{Cutter, Run, Stretch};
 use crate::recall::{Answer, QuestionDigest, Recall, Writing};
-use crate::search::Cutter;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
@@ -32,8 +31,6 @@ pub struct Touched {
     pub zones: usize,
 }
 
-/// So many moves are looked at together.
-pub(super) const TOGETHER: usize = 64;
 /// At first, everything is looked at in so few zones.
 const FIRST_LOOK: usize = 512;
 /// Coordinates of this size are exact to 1.
@@ -205,13 +202,7 @@ impl Scene<'_> {
     }
 
     /// What is found in a range of moves, if it was looked for before: it follows from all up to its end.
-    fn known(
-        &self,
-        recall: &dyn Recall,
-        prefix: &QuestionDigest,
-        most: usize,
-        look: impl FnOnce() -> Found,
-    ) -> Found {
+    fn known(&self, recall: &dyn Recall, prefix: &QuestionDigest, most: usize, look: impl FnOnce() -> Found) -> Found {
         let mut question = Writing::default();
         question.bytes(format!("touched {:?}", self.movers).as_bytes());
         question.0.extend(prefix);

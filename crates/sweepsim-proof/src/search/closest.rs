@@ -1,10 +1,10 @@
 //! How near bodies come to a solid, at every time.
 
-use super::gouge::{Cutter, Limits, Tree, parts, trees};
+use super::gouge::{Limits, Tree, parts, trees};
 use super::known::Asking;
 use super::near::{Found, enough};
 use super::nearest::Search;
-use crate::motion::Run;
+use crate::motion::{Cutter, Run};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};

@@ -1,5 +1,6 @@
 //! What a search has found, and how findings join.
 
+use crate::recall::{Answer, Reading, Writing};
 use crate::statement::{OpenBox, Witness};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -60,5 +61,31 @@ impl Found {
             Entry::Occupied(mut known) if witness.depth > known.get().depth => drop(known.insert(witness)),
             Entry::Occupied(_) => {}
         }
+    }
+}
+
+impl Answer for Found {
+    fn write(&self, to: &mut Writing) {
+        to.list(self.deepest.iter(), Writing::witness);
+        to.floats(&[self.bound]);
+        to.list(self.open.iter(), Writing::open);
+        to.list(self.open_depths.iter(), |to, depth| to.floats(&[*depth]));
+        to.list(self.moves.values(), Writing::witness);
+        to.number(self.pairs);
+        to.list(self.trees.iter(), |to, tree| to.bytes(tree));
+    }
+
+    fn read(from: &mut Reading) -> Option<Self> {
+        Some(Self {
+            deepest: from.list(Reading::witness)?.pop(),
+            bound: from.float()?,
+            open: from.list(Reading::open)?,
+            open_depths: from.list(Reading::float)?,
+            moves: { from.list(Reading::witness)?.into_iter() }
+                .map(|own| (own.number, own))
+                .collect(),
+            pairs: from.number()?,
+            trees: from.list(Reading::bytes)?,
+        })
     }
 }

@@ -1,8 +1,7 @@
 //! Answers to looks at parts of a work that are known.
 
-use super::gouge::Cutter;
-use super::{found, near};
-use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
+use crate::motion::Cutter;
+use crate::recall::{Answer, QuestionDigest, Recall, Writing};
 use std::ops::Range;
 
 /// Who keeps answers, and what is asked of all parts of a look.
@@ -27,7 +26,7 @@ impl Asking<'_> {
                 question.number(*path);
                 question.bytes(format!("{:?}", cutter.solids).as_bytes());
             }
-            question.moves(cutter, moves.clone(), self.deviation);
+            cutter.write(&mut question, moves.clone(), self.deviation);
         }
         self.recall.digest(&question.0)
     }
@@ -40,57 +39,5 @@ impl Asking<'_> {
 
     pub fn keep<'a, A: Answer>(&self, parts: impl Iterator<Item = &'a Part>, found: &[A]) {
         self.recall.keep(&self.digest(parts), A::write_all(found));
-    }
-}
-
-impl Answer for found::Found {
-    fn write(&self, to: &mut Writing) {
-        to.list(self.deepest.iter(), Writing::witness);
-        to.floats(&[self.bound]);
-        to.list(self.open.iter(), Writing::open);
-        to.list(self.open_depths.iter(), |to, depth| to.floats(&[*depth]));
-        to.list(self.moves.values(), Writing::witness);
-        to.number(self.pairs);
-        to.list(self.trees.iter(), |to, tree| to.bytes(tree));
-    }
-
-    fn read(from: &mut Reading) -> Option<Self> {
-        Some(Self {
-            deepest: from.list(Reading::witness)?.pop(),
-            bound: from.float()?,
-            open: from.list(Reading::open)?,
-            open_depths: from.list(Reading::float)?,
-            moves: { from.list(Reading::witness)?.into_iter() }
-                .map(|own| (own.number, own))
-                .collect(),
-            pairs: from.number()?,
-            trees: from.list(Reading::bytes)?,
-        })
-    }
-}
-
-impl Answer for near::Found {
-    fn write(&self, to: &mut Writing) {
-        to.list(self.nearest.iter(), Writing::witness);
-        to.floats(&[self.bound]);
-        to.list(self.open.iter(), Writing::open);
-        to.number(self.open_count);
-        to.list(self.moves.values(), Writing::witness);
-        to.number(self.pairs);
-        to.list(self.trees.iter(), |to, tree| to.bytes(tree));
-    }
-
-    fn read(from: &mut Reading) -> Option<Self> {
-        Some(Self {
-            nearest: from.list(Reading::witness)?.pop(),
-            bound: from.float()?,
-            open: from.list(Reading::open)?,
-            open_count: from.number()?,
-            moves: { from.list(Reading::witness)?.into_iter() }
-                .map(|own| (own.number, own))
-                .collect(),
-            pairs: from.number()?,
-            trees: from.list(Reading::bytes)?,
-        })
     }
 }

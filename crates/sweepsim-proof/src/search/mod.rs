@@ -15,4 +15,4 @@ mod trace;
 
 pub use closest::{Closest, closest, closest_from};
 pub(crate) use gouge::TOGETHER;
-pub use gouge::{Cutter, Enclosed, Limits, Piece, Tree, deepest, deepest_from};
+pub use gouge::{Enclosed, Limits, Tree, deepest, deepest_from};

@@ -1,6 +1,7 @@
 //! What is known of the nearest places, and how findings join.
 
 use super::gouge::Limits;
+use crate::recall::{Answer, Reading, Writing};
 use crate::statement::{OpenBox, Witness};
 use std::collections::BTreeMap;
 
@@ -70,5 +71,31 @@ impl Found {
         if witness.depth < self.distance() {
             self.nearest = Some(witness);
         }
+    }
+}
+
+impl Answer for Found {
+    fn write(&self, to: &mut Writing) {
+        to.list(self.nearest.iter(), Writing::witness);
+        to.floats(&[self.bound]);
+        to.list(self.open.iter(), Writing::open);
+        to.number(self.open_count);
+        to.list(self.moves.values(), Writing::witness);
+        to.number(self.pairs);
+        to.list(self.trees.iter(), |to, tree| to.bytes(tree));
+    }
+
+    fn read(from: &mut Reading) -> Option<Self> {
+        Some(Self {
+            nearest: from.list(Reading::witness)?.pop(),
+            bound: from.float()?,
+            open: from.list(Reading::open)?,
+            open_count: from.number()?,
+            moves: { from.list(Reading::witness)?.into_iter() }
+                .map(|own| (own.number, own))
+                .collect(),
+            pairs: from.number()?,
+            trees: from.list(Reading::bytes)?,
+        })
     }
 }

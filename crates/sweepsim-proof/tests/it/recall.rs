@@ -13,12 +13,15 @@ use sweepsim_proof::{
 
 /// Keeps all answers, and counts those that were known and those that were not.
 #[derive(Default)]
-struct Memory(Mutex<(HashMap<QuestionDigest, Vec<u8>>, [usize; 2])>);
+struct Memory {
+    answers: Mutex<HashMap<QuestionDigest, Vec<u8>>>,
+    counts: Mutex<[usize; 2]>,
+}
 
 impl Memory {
     /// Known, not known; since the last time.
     fn counts(&self) -> [usize; 2] {
-        std::mem::take(&mut self.0.lock().unwrap().1)
+        std::mem::take(&mut self.counts.lock().unwrap())
     }
 }
 
@@ -38,14 +41,13 @@ impl Recall for Memory {
     }
 
     fn recall(&self, question: &QuestionDigest) -> Option<Vec<u8>> {
-        let mut all = self.0.lock().unwrap();
-        let known = all.0.get(question).cloned();
-        all.1[usize::from(known.is_none())] += 1;
+        let known = self.answers.lock().unwrap().get(question).cloned();
+        self.counts.lock().unwrap()[usize::from(known.is_none())] += 1;
         known
     }
 
     fn keep(&self, question: &QuestionDigest, answer: Vec<u8>) {
-        self.0.lock().unwrap().0.insert(*question, answer);
+        self.answers.lock().unwrap().insert(*question, answer);
     }
 }
 
@@ -88,17 +90,31 @@ fn found(recall: &dyn Recall, tips: &[[f64; 3]]) -> [String; 4] {
     let (own, shank) = ([Cutter::new(&cutter, &path, None)], [Cutter::new(&body, &path, None)]);
     let limits = |limit: f64| Limits::new(limit, 0.1 * limit, 400_000);
     [
-        format!("{:?}", deepest_from(recall, &target(), &own, &limits(0.02), true, &()).unwrap()),
-        format!("{:?}", closest_from(recall, &target(), &shank, &limits(0.04), true, &()).unwrap()),
+        format!(
+            "{:?}",
+            deepest_from(recall, &target(), &own, &limits(0.02), true, &()).unwrap()
+        ),
+        format!(
+            "{:?}",
+            closest_from(recall, &target(), &shank, &limits(0.04), true, &()).unwrap()
+        ),
         format!("{:?}", {
             let left = highest_from(recall, (&target(), &stock), &own, &limits(0.4), true, &());
             left.unwrap().unwrap()
         }),
-        format!("{:?}", touched_from(recall, &stock, &work, Movers::Rapids, &room, &()).unwrap().unwrap()),
+        format!(
+            "{:?}",
+            touched_from(recall, &stock, &work, Movers::Rapids, &room, &())
+                .unwrap()
+                .unwrap()
+        ),
     ]
 }
 
-/// After changes of all kinds the answers are those without any knowledge; and after late ones few are looked for again.
+/// A change of a program.
+type Change<'a> = &'a dyn Fn(&mut Vec<[f64; 3]>);
+
+/// After changes of all kinds the answers are those without any knowledge; after late ones few are looked for again.
 #[test]
 fn what_is_known_changes_no_answer() {
     let mut tips = raster();
@@ -108,11 +124,13 @@ fn what_is_known_changes_no_answer() {
     let [known, first] = memory.counts();
     assert!(known < first / 4 && first > 60, "{known} {first}");
     let late = tips.len() - 120;
-    let changes: [(&str, &dyn Fn(&mut Vec<[f64; 3]>)); 6] = [
+    let changes: [(&str, Change); 6] = [
         ("nothing", &|_| {}),
         ("a gouge", &|tips| tips[late][2] = 1.9),
         ("one more move", &|tips| tips.insert(late + 9, [3.0, 9.0, 2.5])),
-        ("a move less", &|tips| drop(tips.remove(late - 50))),
+        ("a move less", &|tips| {
+            tips.remove(late - 50);
+        }),
         ("a rapid that is too low", &|tips| tips.push([0.0, 0.0, 1.0])),
         ("an early move", &|tips| tips[100][2] += 0.2),
     ];

@@ -43,7 +43,8 @@ impl Digest {
     }
 
     pub fn floats(self, all: &[f64]) -> Self {
-        all.iter().fold(self, |own, number| own.bytes(&number.to_bits().to_le_bytes()))
+        all.iter()
+            .fold(self, |own, number| own.bytes(&number.to_bits().to_le_bytes()))
     }
 
     pub fn pose(self, pose: &Pose) -> Self {

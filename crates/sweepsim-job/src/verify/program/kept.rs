@@ -141,9 +141,7 @@ impl<'a> KeptStates<'a> {
             }
         };
         let dexels = Dexels::from_state(self.tiles[tile], state)?;
-        notes
-            .is_of(self.keys.of_paths())
-            .then(|| TileState::new(dexels, notes))
+        notes.is_of(self.keys.of_paths()).then(|| TileState::new(dexels, notes))
     }
 
     /// Moves that are judged again, of so many.
@@ -166,7 +164,9 @@ impl Checkpoints for KeptStates<'_> {
     fn keep(&self, (tile, runs): (usize, usize), remaining: &Dexels, notes: &TileNotes, changes: u64) {
         let Ok(notes) = serde_json::to_vec(notes) else { return };
         let key = self.key(tile, runs);
-        let known = { self.last.lock().unwrap_or_else(PoisonError::into_inner) }.get(&tile).copied();
+        let known = { self.last.lock().unwrap_or_else(PoisonError::into_inner) }
+            .get(&tile)
+            .copied();
         let mut value = Vec::new();
         let same = known.filter(|(before, _)| *before == changes);
         match same {

@@ -216,7 +216,11 @@ impl<'a> JudgedProgram<'a> {
         let on = |tile: &usize| {
             let tile = &set.tiles[*tile];
             known
-                .map(|known| known.tile(tile).map_or_else(|| targets::on(self.session, known, tile), Ok))
+                .map(|known| {
+                    known
+                        .tile(tile)
+                        .map_or_else(|| targets::on(self.session, known, tile), Ok)
+                })
                 .transpose()
         };
         tiles.par_iter().map(on).collect::<Result<_, _>>().map_err(failed)

@@ -1,9 +1,10 @@
 //! The search in one patch.
 
+use super::super::found::Found;
 use super::super::record::{Record, key};
 use super::super::removed::{Holder, Known};
 use super::super::surface::{Halved, Patch};
-use super::{FINEST, Found, MOST_OPEN, SHARE, STEPS, Scene};
+use super::{FINEST, MOST_OPEN, SHARE, STEPS, Scene};
 use crate::motion::Bounds;
 use nalgebra::Vector3;
 

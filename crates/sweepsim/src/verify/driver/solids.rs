@@ -17,7 +17,11 @@ pub(in crate::verify) struct Solids<'a> {
 
 impl<'a> Solids<'a> {
     /// Along some moves of a toolpath.
-    pub(in crate::verify) fn new(toolpath: &ToolPath<'a>, moves: Range<usize>, work: &Work) -> Result<Self, SweepError> {
+    pub(in crate::verify) fn new(
+        toolpath: &ToolPath<'a>,
+        moves: Range<usize>,
+        work: &Work,
+    ) -> Result<Self, SweepError> {
         // The run of a path of one pose counts a move that the path does not have.
         let moves = moves.start..moves.end.min(toolpath.path.moves());
         let mut grids = vec![work.remaining.grid().whole()];
@@ -60,7 +64,9 @@ impl<'a> Solids<'a> {
     }
 
     /// The cutter, and the bodies by their numbers: each as it is looked for, and itself if that is a larger one.
-    pub(in crate::verify) fn probes(&self) -> impl Iterator<Item = (Option<usize>, &MovingSolid<'a>, Option<&MovingSolid<'a>>)> {
+    pub(in crate::verify) fn probes(
+        &self,
+    ) -> impl Iterator<Item = (Option<usize>, &MovingSolid<'a>, Option<&MovingSolid<'a>>)> {
         let bodies = self.bodies.iter().enumerate();
         let own = std::iter::once((None, &self.cutter)).chain(bodies.map(|(n, body)| (Some(n), body)));
         own.map(|(number, itself)| {

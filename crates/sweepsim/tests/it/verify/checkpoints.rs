@@ -37,7 +37,10 @@ fn verified(program: &Program, path: &Path, kept: &Kept) -> Vec<TileVerification
     let tiles = program.case.grid().tiles(SIDE);
     let target = |tile| Target::new(&program.target, tile, 0.01, 0.01).unwrap();
     let targets: Vec<Target> = tiles.iter().map(target).collect();
-    let scenes = tiles.iter().zip(&targets).map(|(tile, target)| program.scene(tile, target));
+    let scenes = tiles
+        .iter()
+        .zip(&targets)
+        .map(|(tile, target)| program.scene(tile, target));
     let toolpath = [ToolPath::new(&program.assembly, path).with_states(&program.case.states)];
     let options = VerifyOptions::default().each_move(true);
     verify_tiles_from(scenes.collect(), &toolpath, &options, kept, &()).unwrap()
@@ -64,7 +67,10 @@ fn what_goes_on_from_a_state_ends_the_same() {
                 TileState::new(Dexels::from_state(*tile, bytes).unwrap(), notes.clone())
             };
             let start = Some((known, tiles.iter().enumerate().map(state).collect()));
-            let again = Kept { start, ..Kept::default() };
+            let again = Kept {
+                start,
+                ..Kept::default()
+            };
             // Other moves before, no larger, but for the last one.
             let mut poses = program.path.poses().to_vec();
             let last = runs[known - 1].moves.end - 1;
@@ -85,7 +91,10 @@ fn what_goes_on_from_a_state_ends_the_same() {
             }
             let later = again.states.into_inner().unwrap();
             assert_eq!(later.len(), (runs.len() - known) * tiles.len());
-            assert!(later.iter().all(|(key, state)| states[key] == *state), "seed {seed}, from {known}");
+            assert!(
+                later.iter().all(|(key, state)| states[key] == *state),
+                "seed {seed}, from {known}"
+            );
         }
     }
     assert!(resumed >= 12, "{resumed}");
