@@ -1,7 +1,7 @@
 //! What the page tells of a part whose faults are known: a slot whose walls are 0.2 mm off on a stretch, and a hole.
 
 use super::devtools::Browser;
-use super::walk::{choose, click, expect, middle, pixels, quiet};
+use super::walk::{choose, click, expect, middle, pixels, quiet, save};
 use serde_json::json;
 use std::path::Path;
 
@@ -138,7 +138,6 @@ pub fn walls(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Resul
     told(&gouge, -0.2, &["walls.nc:8", "T1"])?;
     let good = hovered(browser, [14.0, 3.0, -1.0])?;
     told(&good, 0.0, &["walls.nc:10", "T1"])?;
-    super::walk::save(browser, docs, "report-walls.png")?;
     // From the other side: the near wall, where material is left. A turn by half a circle is a drag of 393 pixels.
     let [x, y] = middle(browser, "#canvas")?;
     let steps: Vec<[f64; 2]> = (0..=10).map(|n| [x - 190.0 + 39.3 * f64::from(n), y]).collect();
@@ -215,7 +214,7 @@ fn section(browser: &mut Browser, docs: Option<&Path>) -> Result<(), String> {
         turned[0] == "free" && turned[1] != after[1],
         &format!("the arrow turns the section to {turned}"),
     )?;
-    super::walk::save(browser, docs, "report-section.png")?;
+    save(browser, docs, "report-section.png")?;
     // By keys.
     browser.value("document.getElementById('section-turn').focus()")?;
     browser.key("ArrowLeft")?;
@@ -236,7 +235,7 @@ fn section(browser: &mut Browser, docs: Option<&Path>) -> Result<(), String> {
 }
 
 /// During the program: walls that are done are sharp, the rest is of lines, and deviations are known.
-pub fn course(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<String, String> {
+pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
     let report = &report.with_file_name("walls").join("report.html");
     browser.open(report)?;
     pixels(browser)?;
@@ -250,7 +249,6 @@ pub fn course(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Resu
         .and_then(|n| n.parse::<u32>().ok())
         .unwrap_or_default();
     expect(quads > 100, &format!("the stock is not drawn by lines: {drawn}"))?;
-    super::walk::save(browser, docs, "report-course.png")?;
     // Without the tool, from above.
     click(browser, "[data-show='tool']")?;
     let [x, y] = middle(browser, "#canvas")?;
@@ -273,7 +271,7 @@ pub fn course(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Resu
 }
 
 /// 300,000 triangles, and three million made into as many: how long each takes to open, and to turn.
-pub fn large(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<String, String> {
+pub fn large(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
     let mut words = Vec::new();
     for (name, whole) in [("300k.html", None), ("3M.html", Some(3_001_250))] {
         browser.open(&report.with_file_name(name))?;
@@ -293,7 +291,6 @@ pub fn large(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Resul
                 &format!("{name} says {said:?}"),
             )?;
         }
-        super::walk::save(browser, docs, &name.replace(".html", ".png"))?;
         let hover = hovered(browser, [100.0, 100.0, 35.0])?;
         expect(
             hover.starts_with("deviation"),

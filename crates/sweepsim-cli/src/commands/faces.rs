@@ -4,7 +4,7 @@ use sweepsim_formats::FaceDeviation;
 use sweepsim_job::words;
 
 /// The most faces that are listed.
-const FACES: usize = 20;
+const FACES: usize = 10;
 
 /// A line for each face on which the part deviates, the worst first; for all if they are few.
 pub(super) fn by_face(faces: &[FaceDeviation], file: &str, line: &mut impl FnMut(&str, &str)) {

@@ -36,8 +36,8 @@ fn step_files_are_described_and_become_meshes() {
     );
 }
 
-/// A part that is 0.2 mm too high on the slope of the tetrahedron, displaced: three-two-one by the other faces brings it
-/// back, and the table says which face is off. Points that do not exist are errors.
+/// A part that is 0.2 mm too high on the slope of the tetrahedron, displaced: three-two-one by the other faces brings
+/// it back, and the table says which face is off. Faces that do not exist are errors.
 #[test]
 fn deviations_are_told_by_face_after_three_two_one() {
     let workdir = Workdir::new("");
@@ -85,14 +85,14 @@ fn deviations_are_told_by_face_after_three_two_one() {
             .find(|own| own["face"] == face)
             .unwrap();
         assert_eq!(own["kind"], "plane");
-        let near = |name: &str, value: f64| (own[name].as_f64().unwrap() - value).abs() < 2e-6;
-        assert!(
-            near("gouge", 0.0) && near("mean", excess) && near("rms", excess),
-            "{own}"
-        );
+        let number = |name: &str| own[name].as_f64().unwrap();
+        // Beside an edge, the other face of the part is nearer.
+        let is_near = |name: &str| number(name) <= excess + 2e-6 && number(name) >= 0.9 * excess - 2e-6;
+        assert!(number("gouge") == 0.0 && is_near("mean") && is_near("rms"), "{own}");
         // On the others, the part reaches beyond the edges of the face.
+        let most = if face == "#53" { 0.2 } else { 0.36 };
         assert!(
-            own["excess"].as_f64().unwrap() <= 0.36 && own["excess"].as_f64().unwrap() >= excess - 2e-6,
+            number("excess") <= most + 2e-6 && number("excess") >= excess - 2e-6,
             "{own}"
         );
     }
@@ -124,14 +124,14 @@ fn deviations_are_told_by_face_after_three_two_one() {
 /// A program that cuts too deep into a face of a STEP target: the finding, the table and the page name the face.
 #[test]
 fn findings_of_verify_name_the_face() {
-    // The tetrahedron upside down would be hard to mill: its slope is cut level at 7 mm, where 10 mm are wanted.
+    // The slope is x + y + z = 10; a hole in it, level at 3.5 mm, is deepest below it where x + y is least: 6 − √2.
     let workdir = Workdir::new(
         "Job(
     name: \"tip\",
     grid: Grid(min: (-1, -1), max: (11, 11), cells: (24, 24)),
     stock: Block(min: (0, 0, 0), max: (10, 10, 10)),
-    tools: { 1: Flat(radius: 3, length: 20) },
-    paths: [Path(tool: 1, poses: [((-4, 1, 7), (0, 0, 1)), ((14, 1, 7), (0, 0, 1))])],
+    tools: { 1: Flat(radius: 1, length: 20) },
+    paths: [Path(tool: 1, poses: [((3, 3, 12), (0, 0, 1)), ((3, 3, 3.5), (0, 0, 1))])],
     target: Mesh(\"tip.step\"),
     limits: Limits(gouge: 0.05, excess: 20),
 )",
@@ -145,13 +145,11 @@ fn findings_of_verify_name_the_face() {
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     let told = text(&output.stdout);
     assert!(
-        told.contains(" on face slope") && told.contains("face  slope (plane): gouge 1."),
+        told.contains(" on face slope") && told.contains("face  slope (plane): gouge "),
         "{told}"
     );
     let report: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(workdir.path("out/report.json")).unwrap()).unwrap();
-    // Between the corner at the top, 3 mm above what is left, and the slope: √3.
-    let depth = |value: &serde_json::Value| value.as_f64().unwrap();
     assert_eq!(report["findings"][0]["face"], "slope");
     assert_eq!(report["regions"][0]["face"], "slope");
     let face = report["faces"]
@@ -160,10 +158,9 @@ fn findings_of_verify_name_the_face() {
         .iter()
         .find(|face| face["face"] == "slope")
         .unwrap();
-    assert!(
-        depth(&face["gouge"]) > 1.2 && depth(&face["gouge"]) < 3.0_f64.sqrt() + 1e-6,
-        "{face}"
-    );
+    let most = (10.0 - (6.0 - 2.0_f64.sqrt()) - 3.5) / 3.0_f64.sqrt();
+    let gouge = face["gouge"].as_f64().unwrap();
+    assert!(gouge > most - 0.3 && gouge < most + 1e-6, "{gouge} of {most}");
     let page = fs::read_to_string(workdir.path("out/report.html")).unwrap();
     assert!(page.contains("Deviations by face of the target") && page.contains("<td>slope</td>"));
 }

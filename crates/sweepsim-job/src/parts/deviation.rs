@@ -7,7 +7,8 @@ use sweepsim_formats::{ComparisonReport, DeviationSummary, HistogramBar, Surface
 /// Bars of the histogram.
 const BARS: usize = 20;
 
-/// Compares the surfaces of a part and of its target, both ways, and fills in the report; by face if the target has any.
+/// Compares the surfaces of a part and of its target, both ways, and fills in the report; by face if the target has
+/// any.
 pub(super) fn describe(
     report: &mut ComparisonReport,
     [part, target]: [&Surface<'_>; 2],

@@ -149,8 +149,8 @@ impl Target<'_> {
     }
 }
 
-/// The best of all starts: as the part lies, and with its principal axes along those of the target. Of those that are as
-/// good, as for a part with a symmetry, the one that moves least.
+/// The best of all starts: as the part lies, and with its principal axes along those of the target. Of those that are
+/// as good, as for a part with a symmetry, the one that moves least.
 pub(super) fn best(tree: &DistanceTo, samples: &[Sample], goal: &[Sample]) -> Fit {
     let few: Vec<Sample> = samples.iter().step_by(SPARSE).copied().collect();
     let [facing, all] = [Counted::Facing, Counted::Surface].map(|counted| Target { tree, counted });
