@@ -1,6 +1,6 @@
 //! Whether two bodies stay apart, or when they first come too near.
 
-use crate::course::{Course, Interval, Runs};
+use crate::course::{Course, Interval, Runs, begin};
 use crate::gap::{Gap, Pair};
 use crate::joint::{Linkage, Rigid, Span, Travel, Values};
 use crate::shape::{Body, Node};
@@ -123,8 +123,9 @@ struct Known {
 impl Known {
     /// A time is done with if both are farther apart than this: than the clearance, and not much nearer than they were
     /// seen to be, where that is near enough to be told.
-    fn wanted(&self, clearance: f64) -> f64 {
-        clearance.max((CLOSE * self.nearest).min(TOLD))
+    /// `off`: so much of it no division of time shows.
+    fn wanted(&self, clearance: f64, off: f64) -> f64 {
+        clearance.max((CLOSE * (self.nearest - off)).min(TOLD))
     }
 }
 
@@ -198,7 +199,7 @@ impl Search<'_> {
     fn look(&self, interval: &Interval, nodes: SmallVec<[Nodes; 4]>, known: &mut Known) -> Found {
         let clearance = self.limits.clearance;
         let span = self.runs.span(interval);
-        let frame = self.frame(&span.middle);
+        let (frame, widest) = (self.frame(&span.middle), self.widest());
         let mut left = SmallVec::<[Nodes; 4]>::new();
         let mut nearest: Option<(Gap, Nodes)> = None;
         let mut todo = nodes;
@@ -208,7 +209,7 @@ impl Search<'_> {
                 return Found::Unknown;
             }
             known.tests -= 1;
-            let wanted = known.wanted(clearance);
+            let wanted = known.wanted(clearance, widest);
             let travel = self.travel(&span, b);
             let start = frame.of(&b.centre) - a.centre;
             let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + wanted);
@@ -219,7 +220,7 @@ impl Search<'_> {
                 known.nearest = known.nearest.min(gap.high);
             }
             // The last step: time is not divided further.
-            let short = is_one && travel.most() <= self.limits.tolerance + self.widest();
+            let short = is_one && travel.most() <= self.limits.tolerance + widest;
             if low > wanted || short && low > clearance {
                 known.least = known.least.min(low);
                 continue;
@@ -358,12 +359,5 @@ impl Search<'_> {
             })
         });
         contacts.next()
-    }
-}
-
-fn begin(interval: &Interval) -> f64 {
-    match interval {
-        Interval::Run { .. } => 0.0,
-        Interval::Part { from, .. } => *from,
     }
 }

@@ -17,7 +17,7 @@ mod tool;
 
 pub use certificate::{depth_claim, distance_claim, height_claim, motions, outline};
 pub use excess::{Left, PatchTrees, highest, margin, regions};
-pub use process::{Movers, Room, Touched, Work, touched};
+pub use process::{Movers, Remains, Room, Touched, Work, touched};
 pub use search::{Closest, Cutter, Enclosed, Limits, Piece, Tree, closest, deepest};
 pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};

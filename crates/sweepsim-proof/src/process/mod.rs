@@ -8,6 +8,7 @@
 //! Rapids remove nothing here, so that what they would remove is found.
 
 mod history;
+mod remains;
 mod ring;
 mod samples;
 mod scene;
@@ -15,5 +16,6 @@ mod search;
 mod visit;
 mod zone;
 
+pub use remains::Remains;
 pub use scene::{Movers, Room, Work};
 pub use search::{Touched, touched};
