@@ -202,6 +202,7 @@ impl Search<'_> {
         let (frame, widest) = (self.frame(&span.middle), self.widest());
         let mut left = SmallVec::<[Nodes; 4]>::new();
         let mut nearest: Option<(Gap, Nodes)> = None;
+        let is_ranged = self.limits.slack != Values::default();
         let mut todo = nodes;
         while let Some((i, j)) = todo.pop() {
             let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
@@ -213,7 +214,11 @@ impl Search<'_> {
             let travel = self.travel(&span, b);
             let start = frame.of(&b.centre) - a.centre;
             let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + wanted);
-            let low = gap.low - travel.along(&gap.direction);
+            let mut low = gap.low - travel.along(&gap.direction);
+            if is_ranged && low <= wanted {
+                // What joints may be off counts more than how near the bodies are.
+                low = low.max(self.pair(&frame, (i, j)).apart_along_axes(&travel));
+            }
             // The middle of a box around many moves may be far from all of them.
             let is_one = matches!(interval, Interval::Part { .. });
             if is_one && a.parts.is_none() && b.parts.is_none() {

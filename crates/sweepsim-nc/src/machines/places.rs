@@ -21,7 +21,7 @@ impl MachineDescription {
         });
         let rotary = self.table.iter().chain(&self.head);
         let rotary = rotary.map(|axis| (axis.letter, axis.limits, [axis.home, axis.second_home]));
-        let axes: Vec<(char, Option<[f64; 2]>, [Option<f64>; 2])> = linear.into_iter().chain(rotary).collect();
+        let axes: Vec<_> = linear.into_iter().chain(rotary).collect();
         let within = |what: String, value: f64, limits: Option<[f64; 2]>| {
             let good = value.is_finite() && limits.is_none_or(|[least, largest]| (least..=largest).contains(&value));
             check(|| what.clone(), value, good, "a number within the limits of the axis")
