@@ -63,7 +63,8 @@ fn check(program: &str, side: usize, is_upper: bool, bound: f64) {
         });
         assert!(is_free(&run(at, program)), "{at:?} of {low:?} {high:?}");
     }
-    let mut beyond = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+    // Below, where it does not pass over the post.
+    let mut beyond = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]];
     beyond[side] = if is_upper { bound + 0.1 } else { bound - 0.1 };
     assert!(!is_free(&run(beyond, program)), "{beyond:?}");
     assert!(
