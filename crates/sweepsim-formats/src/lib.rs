@@ -62,7 +62,7 @@ pub use drafts::{Draft, DraftOptions, DraftStock, Guess, draft, draft_of};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
 pub use jobs::{
     AsWear, Flags, Job, JobPath, LimitRegion, Limits, OnMachine, Origin, Origins, Provided, RegionPlace, Seconds,
-    Setup, Target, TargetFaces, Units,
+    Setup, Target, TargetFaces, Units, may_touch, must_stay_apart,
 };
 pub use meshes::{
     Colour, MeshFormat, STEP_CHORD, STEP_SHARE, STEP_THREAD, StepBody, StepFace, StepPart, parse_step, parse_stl,

@@ -136,3 +136,11 @@ impl<'a> Runs<'a> {
         }
     }
 }
+
+/// When an interval begins, in its first move.
+pub(crate) fn begin(interval: &Interval) -> f64 {
+    match interval {
+        Interval::Run { .. } => 0.0,
+        Interval::Part { from, .. } => *from,
+    }
+}

@@ -3,7 +3,7 @@
 //! The closest point of their difference to 0 is found as by E. G. Gilbert, D. W. Johnson, S. S. Keerthi (1988). Each
 //! step gives a direction; the lower bound is what the supports of both solids along it show, however it was found.
 
-use crate::joint::Rigid;
+use crate::joint::{Rigid, Travel};
 use crate::shape::Convex;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
@@ -84,6 +84,13 @@ impl Pair<'_> {
             }
         }
         best
+    }
+
+    /// How far apart both are along the axes of coordinates, less what they travel along these.
+    pub fn apart_along_axes(&self, travel: &Travel) -> f64 {
+        let sides = (0..3).flat_map(|k| [1.0, -1.0].map(|sign| Vector3::ith(k, sign)));
+        let apart = sides.map(|u: Vector3<f64>| self.along(&u) - travel.along(&u));
+        apart.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The least shift that separates two solids that overlap is at most this long: the least overlap along some

@@ -9,12 +9,14 @@
 mod course;
 mod gap;
 mod joint;
+mod matter;
 mod search;
 mod shape;
 mod within;
 
 pub use course::Course;
 pub use joint::{JOINTS, Joint, Linkage, Values};
+pub use matter::{Matter, meets};
 pub use search::{Contact, Limits, Outcome, contacts};
 pub use shape::{Body, Convex};
 

@@ -1,6 +1,6 @@
 //! Whether two bodies stay apart, or when they first come too near.
 
-use crate::course::{Course, Interval, Runs};
+use crate::course::{Course, Interval, Runs, begin};
 use crate::gap::{Gap, Pair};
 use crate::joint::{Linkage, Rigid, Span, Travel, Values};
 use crate::shape::{Body, Node};
@@ -123,8 +123,9 @@ struct Known {
 impl Known {
     /// A time is done with if both are farther apart than this: than the clearance, and not much nearer than they were
     /// seen to be, where that is near enough to be told.
-    fn wanted(&self, clearance: f64) -> f64 {
-        clearance.max((CLOSE * self.nearest).min(TOLD))
+    /// `off`: so much of it no division of time shows.
+    fn wanted(&self, clearance: f64, off: f64) -> f64 {
+        clearance.max((CLOSE * (self.nearest - off)).min(TOLD))
     }
 }
 
@@ -198,9 +199,10 @@ impl Search<'_> {
     fn look(&self, interval: &Interval, nodes: SmallVec<[Nodes; 4]>, known: &mut Known) -> Found {
         let clearance = self.limits.clearance;
         let span = self.runs.span(interval);
-        let frame = self.frame(&span.middle);
+        let (frame, widest) = (self.frame(&span.middle), self.widest());
         let mut left = SmallVec::<[Nodes; 4]>::new();
         let mut nearest: Option<(Gap, Nodes)> = None;
+        let is_ranged = self.limits.slack != Values::default();
         let mut todo = nodes;
         while let Some((i, j)) = todo.pop() {
             let (a, b) = (&self.a.nodes[i as usize], &self.b.nodes[j as usize]);
@@ -208,18 +210,22 @@ impl Search<'_> {
                 return Found::Unknown;
             }
             known.tests -= 1;
-            let wanted = known.wanted(clearance);
+            let wanted = known.wanted(clearance, widest);
             let travel = self.travel(&span, b);
             let start = frame.of(&b.centre) - a.centre;
             let gap = self.pair(&frame, (i, j)).gap(&start, |u| travel.along(u) + wanted);
-            let low = gap.low - travel.along(&gap.direction);
+            let mut low = gap.low - travel.along(&gap.direction);
+            if is_ranged && low <= wanted {
+                // What joints may be off counts more than how near the bodies are.
+                low = low.max(self.pair(&frame, (i, j)).apart_along_axes(&travel));
+            }
             // The middle of a box around many moves may be far from all of them.
             let is_one = matches!(interval, Interval::Part { .. });
             if is_one && a.parts.is_none() && b.parts.is_none() {
                 known.nearest = known.nearest.min(gap.high);
             }
             // The last step: time is not divided further.
-            let short = is_one && travel.most() <= self.limits.tolerance + self.widest();
+            let short = is_one && travel.most() <= self.limits.tolerance + widest;
             if low > wanted || short && low > clearance {
                 known.least = known.least.min(low);
                 continue;
@@ -358,12 +364,5 @@ impl Search<'_> {
             })
         });
         contacts.next()
-    }
-}
-
-fn begin(interval: &Interval) -> f64 {
-    match interval {
-        Interval::Run { .. } => 0.0,
-        Interval::Part { from, .. } => *from,
     }
 }

@@ -138,6 +138,12 @@ impl Body {
         Self { moves, ..self }
     }
 
+    /// Lower and upper corner of the box around it, on its link.
+    #[must_use]
+    pub fn extent(&self) -> [[f64; 3]; 2] {
+        self.nodes[0].solid.extent().map(Into::into)
+    }
+
     /// Its solids.
     pub fn solids(&self) -> impl Iterator<Item = &Convex> {
         self.nodes

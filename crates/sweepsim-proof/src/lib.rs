@@ -19,7 +19,7 @@ mod tool;
 pub use certificate::{depth_claim, distance_claim, height_claim, motions, outline};
 pub use excess::{Left, PatchTrees, highest, highest_from, margin, regions};
 pub use motion::{Cutter, Piece};
-pub use process::{Movers, Room, Touched, Work, touched, touched_from};
+pub use process::{Movers, Remains, Room, Touched, Work, touched, touched_from};
 pub use recall::{QuestionDigest, Recall};
 pub use search::{Closest, Enclosed, Limits, Tree, closest, closest_from, deepest, deepest_from};
 pub use solid::{Fault, Target};

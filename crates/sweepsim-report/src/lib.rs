@@ -29,6 +29,7 @@
 //!
 //! `assets/` holds the page's style sheets and scripts as they are read by people; nothing is generated or minified.
 
+mod axes;
 mod encode;
 mod findings;
 mod html;
@@ -38,6 +39,7 @@ mod scene;
 mod tables;
 mod viewer;
 
+pub use axes::AxisPlot;
 pub use findings::{Excerpt, Finding};
 pub use html::measure;
 pub use page::{Page, Picture, Verdict, VerdictState};

@@ -1,5 +1,6 @@
 //! The page as a whole.
 
+use crate::axes::{self, AxisPlot};
 use crate::encode::{Embedded, embed};
 use crate::findings::{self, Finding};
 use crate::html::{escape, json};
@@ -11,9 +12,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write as _;
 
-const STYLES: [&str; 3] = [
+const STYLES: [&str; 4] = [
     include_str!("../assets/page.css"),
     include_str!("../assets/viewer.css"),
+    include_str!("../assets/axes.css"),
     include_str!("../assets/print.css"),
 ];
 
@@ -116,6 +118,8 @@ pub struct Page {
     pub facts: Vec<Fact>,
     /// Quantities along the program.
     pub plots: Vec<Plot>,
+    /// The travel of the machine's axes along the program.
+    pub axes: Vec<AxisPlot>,
     /// Deviations from the target.
     pub histogram: Option<Histogram>,
     /// Tables, in order.
@@ -273,9 +277,10 @@ impl Page {
         if let Some(track) = self.scene.as_ref().and_then(|scene| scene.track.as_ref()) {
             let end = track.points.last().map_or(0.0, |point| point.clock);
             viewer::timeline(html, self.scene.as_ref());
-            if !self.plots.is_empty() {
+            if !self.plots.is_empty() || !self.axes.is_empty() {
                 html.push_str("<div class=\"plots\" id=\"plots\">\n");
                 plots::plots(html, &self.plots, end);
+                axes::axes(html, &self.axes, end);
                 html.push_str("</div>\n");
             }
         }

@@ -2,6 +2,7 @@
 
 mod envelope;
 mod figures;
+mod machines;
 mod runs;
 
 use crate::workspace;
@@ -28,6 +29,13 @@ pub fn draw(filter: Option<&str>) -> Result<(), String> {
             store(run.name, &run.image()?)?;
             drawn += 1;
         }
+    }
+    if wanted(machines::NAME) {
+        if !built {
+            runs::build()?;
+        }
+        store(machines::NAME, &machines::image()?)?;
+        drawn += 1;
     }
     match (drawn, filter) {
         (0, Some(part)) => Err(format!("no picture's name contains {part:?}")),

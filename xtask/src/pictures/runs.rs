@@ -215,7 +215,7 @@ impl Run {
     }
 }
 
-fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
@@ -238,7 +238,7 @@ pub fn build() -> Result<(), String> {
 }
 
 /// Runs `sweepsim`.
-fn command(words: &[&str]) -> Result<(), String> {
+pub fn command(words: &[&str]) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
     let program = own.with_file_name(format!("sweepsim{}", std::env::consts::EXE_SUFFIX));
     match Command::new(program).args(words).arg("--quiet").status() {
@@ -248,7 +248,7 @@ fn command(words: &[&str]) -> Result<(), String> {
     }
 }
 
-fn read(file: &Path) -> Result<Image, String> {
+pub fn read(file: &Path) -> Result<Image, String> {
     let about = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
     let bytes = fs::read(file).map_err(|error| about(&error))?;
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))

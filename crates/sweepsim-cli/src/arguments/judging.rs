@@ -42,6 +42,10 @@ pub(crate) struct JudgeOptions {
     /// Judges the machine for all tools this much longer or shorter than it takes them, in millimetres.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub length_range: Option<f64>,
+    /// Looks for another place of the part if the program collides with the machine or meets a limit: a box of offsets
+    /// that is proven free. Takes as long as up to some hundred proofs.
+    #[arg(long, conflicts_with = "no_proof")]
+    pub place: bool,
 }
 
 impl JudgeOptions {
@@ -51,6 +55,7 @@ impl JudgeOptions {
         (judging.sure, judging.moves) = (self.sure, self.moves);
         judging.proof = !self.no_proof;
         judging.offset_range = self.offset_range.unwrap_or_default();
+        judging.place = self.place;
         judging.length_range = self.length_range.unwrap_or_default();
         judging
     }

@@ -43,6 +43,48 @@ fn differing(a: &Image, b: &Image) -> f64 {
     far as f64 / (a.rgb().len() / 3) as f64
 }
 
+/// The machine's bodies are in the frames, where they are then; without bodies, none are.
+#[test]
+fn frames_show_the_machine() {
+    let folder = Workdir::new(JOB);
+    let program = "G21 G90\nT1 M6\nS900 M3\nG1 X0 Y0 Z60 F900\nG1 A0\nG1 A60\nM30\n";
+    fs::write(folder.path("turn.nc"), program).unwrap();
+    let drawn = |machine: &str| {
+        let job = format!(
+            "Job(grid: Grid(min: (-20, -20), max: (20, 20), cells: (8, 8)), stock: Block(min: (-20, -20, -30), max: (20, 20, 0)), \
+             tools: {{1: Flat(radius: 5, length: 30)}}, paths: [Path(file: \"turn.nc\", machine: \"{machine}\")])"
+        );
+        fs::write(folder.path("turn.ron"), job).unwrap();
+        let job = folder.path("turn.ron").display().to_string();
+        let out = folder.path("out").display().to_string();
+        let words = [
+            "simulate",
+            &job,
+            "--out",
+            &out,
+            "--frames",
+            "3",
+            "--size",
+            "240x180",
+            "--no-axes",
+            "--only",
+            "picture",
+        ];
+        let output = folder.run(&words);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        [2, 3].map(|number| image(&folder, &format!("frame-000{number}.png")))
+    };
+    let of_tool = |image: &Image| {
+        let background = image.pixel(0, 0).unwrap();
+        image.rgb().chunks(3).filter(|pixel| *pixel != background).count()
+    };
+    let [_, bare] = drawn("trunnion-ac");
+    let [before, after] = drawn("trunnion-ac,table=320");
+    assert!(of_tool(&after) > 0 && differing(&bare, &after) > 0.1);
+    // The cradle has tilted between both.
+    assert!(differing(&before, &after) > 0.02);
+}
+
 #[test]
 fn frames_lead_from_the_raw_stock_to_the_part() {
     let folder = Workdir::new(JOB);

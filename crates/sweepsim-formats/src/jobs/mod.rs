@@ -13,6 +13,6 @@ mod tools;
 
 pub use job::{Job, Units};
 pub use judging::{LimitRegion, Limits, RegionPlace, Target, TargetFaces};
-pub use paths::{AsWear, Flags, JobPath, OnMachine, Origin, Origins, Seconds};
+pub use paths::{AsWear, Flags, JobPath, OnMachine, Origin, Origins, Seconds, may_touch, must_stay_apart};
 pub use provided::Provided;
 pub use setups::Setup;

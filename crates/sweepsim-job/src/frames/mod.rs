@@ -4,11 +4,13 @@
 //! the tool has swept of the move that it is in is removed from a copy, along chords: the picture is the only thing
 //! that is made of it.
 
+mod machine;
 mod moments;
 
 use crate::base::{JobError, Sink};
 use crate::session::{CancelOnly, Session, phase};
 use crate::show::{CRISP, Placement, bounds, frame_picture, placements, shape, share};
+use machine::Machines;
 use moments::{Moment, moments};
 use std::collections::BTreeMap;
 use sweepsim::motion::{BodyKind, Path, Pose};
@@ -56,6 +58,15 @@ fn draw(session: Session, count: usize, stock: Vec<Dexels>, sink: &mut dyn Sink)
         return Err(JobError::request("frames", "expected a stock that is not empty"));
     };
     let mut tools: BTreeMap<u32, Mesh> = BTreeMap::new();
+    // The bodies of the machine are in all frames, if there are any.
+    let machines = Machines::new(job);
+    let seen = moments.iter().filter_map(|moment| bounds(&machines.at(job, *moment)));
+    let whole = seen.fold(whole, |[low, high], [a, b]| {
+        [
+            [0, 1, 2].map(|k| low[k].min(a[k])),
+            [0, 1, 2].map(|k| high[k].max(b[k])),
+        ]
+    });
     for number in 0..count {
         let moment = moments.get(number).copied();
         let sets = match moment {
@@ -69,6 +80,13 @@ fn draw(session: Session, count: usize, stock: Vec<Dexels>, sink: &mut dyn Sink)
             let reach = job.tools[&path.tool].reach();
             placed(own, &Placement::at(&path.path, moment.number, moment.time, reach))
         });
+        let bodies = moment
+            .map(|moment| machines.at(job, moment))
+            .filter(|bodies| !bodies.triangles.is_empty());
+        let tool = match (tool, bodies) {
+            (Some(tool), Some(bodies)) => Some(joined(tool, bodies)),
+            (tool, bodies) => tool.or(bodies),
+        };
         let go_on = share(session.monitor, |part| (number as f64 + part) / count as f64);
         let png = frame_picture(&request.view, &mesh, tool.as_ref(), whole, &go_on)?;
         sink.write(&name(number + 1), &mut |file| file.write_all(&png))?;
@@ -152,15 +170,20 @@ fn assembled(job: &Job, number: u32) -> Mesh {
     let mut whole = shape::mesh(&job.tools[&number], CRISP);
     let bodies = job.bodies.get(&number).into_iter().flatten();
     for body in bodies.filter(|body| matches!(body.kind, BodyKind::Shank | BodyKind::Holder)) {
-        let part = shape::mesh(&body.solid, CRISP);
-        let first = whole.vertices.len() as u32;
-        whole.vertices.extend(part.vertices);
-        whole.normals.extend(part.normals);
-        whole.cut.extend(part.cut);
-        whole
-            .triangles
-            .extend(part.triangles.iter().map(|t| t.map(|v| first + v)));
+        whole = joined(whole, shape::mesh(&body.solid, CRISP));
     }
+    whole
+}
+
+/// Two meshes in one.
+fn joined(mut whole: Mesh, part: Mesh) -> Mesh {
+    let first = whole.vertices.len() as u32;
+    whole.vertices.extend(part.vertices);
+    whole.normals.extend(part.normals);
+    whole.cut.extend(part.cut);
+    whole
+        .triangles
+        .extend(part.triangles.iter().map(|t| t.map(|v| first + v)));
     whole
 }
 

@@ -2,9 +2,9 @@
 
 use super::PageSource;
 use super::course::Courses;
-use super::solids::{block, cone};
+use crate::show::solids;
 use sweepsim_formats::OnMachine;
-use sweepsim_machine::{Body, Convex, Course, Joint};
+use sweepsim_machine::{Body, Course, Joint};
 use sweepsim_report::{JOINTS, Machine, MachineJoint, MachinePoint, Solid, SolidKind};
 
 /// Parts of a move in which an axis goes no straight way.
@@ -65,7 +65,7 @@ pub(super) fn machine(source: &PageSource, made: &Courses) -> Option<(Machine, V
 }
 
 /// What the axes do on all paths for this machine.
-fn points(source: &PageSource, made: &Courses, own: &OnMachine) -> Vec<MachinePoint> {
+pub(super) fn points(source: &PageSource, made: &Courses, own: &OnMachine) -> Vec<MachinePoint> {
     let job = source.session.job;
     let every = job.moves().div_ceil(POINTS).max(1);
     let mut points = Vec::new();
@@ -103,24 +103,7 @@ fn points(source: &PageSource, made: &Courses, own: &OnMachine) -> Vec<MachinePo
 
 /// A body as triangles on its link.
 fn solid(body: &Body) -> Solid {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for solid in body.solids() {
-        let (own, corners) = match solid {
-            Convex::Block { min, max } => block(*min, *max),
-            Convex::Turned { base, axis, circles } => {
-                let [low, high] = [circles[0], circles[circles.len() - 1]];
-                cone(*base, (**axis).into(), [low, high])
-            }
-            Convex::Triangle(corners) => (corners.to_vec(), vec![[0, 1, 2]]),
-            Convex::Hull(_) => (Vec::new(), Vec::new()),
-        };
-        if triangles.len() > LARGEST {
-            break;
-        }
-        let first = vertices.len() as u32;
-        vertices.extend(own);
-        triangles.extend(corners.into_iter().map(|corners: [u32; 3]| corners.map(|v| v + first)));
-    }
+    let (vertices, triangles) = solids::body(body, LARGEST);
     Solid {
         kind: SolidKind::Body { link: body.link as u16 },
         setup: None,

@@ -1,5 +1,6 @@
 //! `report.html`: the report for people. The words are put together here, the page itself by `sweepsim-report`.
 
+mod axes;
 mod course;
 mod deviation;
 mod machine;
@@ -70,6 +71,7 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     page.proofs = proofs::proofs(report, &programs, &clock);
     page.facts = facts(source);
     page.plots = plots(source, &made);
+    page.axes = axes::plots(source, &made);
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
     page.tables = tables::setups(source);
     page.tables.push(tables::tools(source, &made));

@@ -3,13 +3,12 @@
 use super::surface;
 use crate::request::Task;
 use crate::show::shape;
+use crate::show::solids::{SIDES, Triangles, band, block, cone};
 use sweepsim::motion::{BodyKind, Tool};
 use sweepsim_dexel::{Mesh, Stock, TriDexels};
 use sweepsim_formats::Job;
 use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
 
-/// Sides of a cylinder, and of a ball from pole to pole.
-const SIDES: usize = 64;
 /// Larger meshes are shown with fewer triangles; so many of a union are shown at all.
 const LARGEST: usize = 300_000;
 
@@ -52,8 +51,6 @@ pub(super) fn solids(job: &Job, task: Task) -> (Vec<Solid>, Vec<String>) {
     }
     (solids, notes)
 }
-
-pub(super) type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// The surfaces of a solid; of intersections and differences, that of their first part.
 fn meshes(stock: &Stock) -> Vec<Triangles> {
@@ -98,63 +95,8 @@ fn meshes(stock: &Stock) -> Vec<Triangles> {
     }
 }
 
-pub(super) fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
-    let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
-    let faces: [[u32; 4]; 6] = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
-    ((0..8).map(corner).collect(), triangles.collect())
-}
-
-/// A ring of triangles between two rings of vertices.
-fn band(from: u32, to: u32, triangles: &mut Vec<[u32; 3]>) {
-    let sides = SIDES as u32;
-    for k in 0..sides {
-        let next = (k + 1) % sides;
-        triangles.push([from + k, from + next, to + next]);
-        triangles.push([from + k, to + next, to + k]);
-    }
-}
-
 fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangles {
     cone(base, axis, [[radius, 0.0], [radius, height]])
-}
-
-/// What is turned about an axis between two circles of radius and height.
-pub(super) fn cone(base: [f64; 3], axis: [f64; 3], circles: [[f64; 2]; 2]) -> Triangles {
-    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let z = axis.map(|c| c / length);
-    let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
-    let helper = [0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 });
-    let cross =
-        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
-    let x = cross(helper, z);
-    let size = x.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let x = x.map(|c| c / size);
-    let y = cross(z, x);
-    let mut vertices: Vec<[f64; 3]> = circles.map(|[_, up]| [0, 1, 2].map(|k| base[k] + up * z[k])).into();
-    for [radius, up] in circles {
-        for side in 0..SIDES {
-            let turn = side as f64 / SIDES as f64 * std::f64::consts::TAU;
-            let (s, c) = turn.sin_cos();
-            vertices.push([0, 1, 2].map(|k| base[k] + radius * (c * x[k] + s * y[k]) + up * z[k]));
-        }
-    }
-    let (low, high) = (2, 2 + SIDES as u32);
-    let mut triangles = Vec::new();
-    band(low, high, &mut triangles);
-    for k in 0..SIDES as u32 {
-        let next = (k + 1) % SIDES as u32;
-        triangles.push([0, low + next, low + k]);
-        triangles.push([1, high + k, high + next]);
-    }
-    (vertices, triangles)
 }
 
 fn ball(centre: [f64; 3], radius: f64) -> Triangles {

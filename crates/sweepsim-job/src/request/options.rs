@@ -143,6 +143,8 @@ pub struct Judging {
     pub offset_range: [f64; 3],
     /// How much longer or shorter tools may be than the machine takes them, in millimetres.
     pub length_range: f64,
+    /// Whether another place of the part is looked for, if the program collides with the machine or meets a limit.
+    pub place: bool,
 }
 
 impl Default for Judging {
@@ -155,6 +157,7 @@ impl Default for Judging {
             proof: true,
             offset_range: [0.0; 3],
             length_range: 0.0,
+            place: false,
         }
     }
 }

@@ -32,6 +32,16 @@ pub(super) fn describe(
         findings.extend(new);
         report.statements = Some(statements.clone());
     }
+    if session.request.judging.place
+        && !done.stopped
+        && findings
+            .iter()
+            .any(|own| ["machine", "limit"].contains(&own.kind.as_str()))
+    {
+        let (place, note) = phase(report, "place", || proof::propose(session))?;
+        report.free_place = place;
+        report.notes.extend(note);
+    }
     // A stable sort: of one move, what happens first comes first.
     let when = |finding: &ReportedFinding| (finding.path, finding.r#move);
     findings.sort_by(|a, b| {

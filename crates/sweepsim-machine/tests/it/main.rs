@@ -1,5 +1,7 @@
 //! Random machines against dense times, with the separating axes of boxes as judge.
 
+mod matter;
+
 use nalgebra::{Matrix3, Unit, Vector3};
 use proptest::prelude::*;
 use std::cell::Cell;

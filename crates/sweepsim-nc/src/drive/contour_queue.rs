@@ -166,6 +166,7 @@ impl Track {
 
     /// A programmed move in the frame.
     pub fn go(&mut self, stroke: Stroke) -> Result<(), NcProblem> {
+        self.leave_places(stroke.end)?;
         let from = self.known();
         match from {
             Some(from) if self.contour.is_busy() => self.programmed(from, stroke)?,

@@ -130,6 +130,12 @@ impl Driver {
         }
     }
 
+    /// What machine coordinates of the spindle's nose are more than a program's, with this tool.
+    pub fn to_machine(&self) -> Option<[f64; 3]> {
+        let machine = self.kinematics()?;
+        Some(machine.to_machine(machine.tool_length(self.tool)).into())
+    }
+
     /// Takes the tool for longer than it is.
     pub fn lengthen(&mut self, oversize: f64) {
         self.oversize = oversize;

@@ -7,6 +7,7 @@ mod contour_queue;
 mod cycles;
 mod driver;
 mod moves;
+mod places;
 mod rapids;
 mod said;
 mod trace;
@@ -25,6 +26,7 @@ pub(crate) use cycles::{
     ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,
 };
 pub(crate) use driver::{Coordinates, Sense};
+pub(crate) use places::LETTERS;
 pub(crate) use said::{DiameterAsked, UNKNOWN_TOOL};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;

@@ -7,6 +7,7 @@ use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace, Recording};
 use super::driver::{Coordinates, Driver, Sense};
+use super::places::Places;
 use super::trace::Trace;
 use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut};
 use crate::machines::{Machine, Position, WorkFrame};
@@ -70,6 +71,7 @@ pub(crate) struct Track {
     pub(super) recording: Option<Recording>,
     /// The axes along which a move that only the machine knows has gone.
     pub(super) lost: [bool; 3],
+    pub places: Places,
 }
 
 impl Track {
@@ -78,7 +80,7 @@ impl Track {
             machine: options.machine.clone(),
             ..Program::default()
         };
-        Self {
+        let mut track = Self {
             driver: Driver::new(options, sense),
             notes: NoteList::default(),
             program,
@@ -119,7 +121,10 @@ impl Track {
             left_out: BTreeMap::new(),
             recording: None,
             lost: [false; 3],
-        }
+            places: Places::default(),
+        };
+        track.stand_at_home();
+        track
     }
 
     /// The course of a tool whose program gives its tips and directions, whatever the machine is.
@@ -230,23 +235,18 @@ impl Track {
             }
         }
         self.parked = None;
-        self.joined = false;
+        (self.joined, self.places.stands) = (false, false);
     }
 
     pub fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
         if let Some(number) = tool.filter(|_| tool != self.tool) {
             self.refuse_contour("a tool change")?;
+            self.go_to_change()?;
             self.event(EventKind::ToolChange(number))?;
             self.take_tool(tool);
             self.joined = false;
         }
         Ok(())
-    }
-
-    /// Has a tool in the spindle from now on.
-    pub fn take_tool(&mut self, tool: Option<u32>) {
-        self.tool = tool;
-        self.driver.change_tool(tool);
     }
 
     /// Takes the tool for longer than it is by `oversize`: the tool stays where it is, and its coordinates change.
@@ -374,17 +374,11 @@ impl Track {
             if self.joined {
                 made.set_way(way);
             }
-            self.program.poses.push(made);
-            if self.driver.kinematics().is_some() {
-                let position = match self.coordinates {
-                    Coordinates::Axes => Some(to),
-                    Coordinates::Tip => self
-                        .driver
-                        .axes_at(to.xyz, to.abc)
-                        .map(|xyz| Position::new(xyz, to.abc)),
-                };
-                self.program.positions.extend(position);
+            if let Some(position) = self.axes_of(&to).filter(|_| self.driver.kinematics().is_some()) {
+                made.fixed = self.fixed_at(&position);
+                self.program.positions.extend([position]);
             }
+            self.program.poses.push(made);
         }
         self.joined = true;
         Ok(())

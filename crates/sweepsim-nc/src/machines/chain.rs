@@ -120,6 +120,16 @@ impl Chain {
         spread
     }
 
+    /// The values of its joints where all axes stand before a program: at their homes, or where they start.
+    #[must_use]
+    pub fn home(&self, machine: &Kinematics) -> Values {
+        let mut values = [0.0; JOINTS];
+        for (own, letter) in values.iter_mut().zip(&self.letters) {
+            *own = machine.at_home(*letter);
+        }
+        values
+    }
+
     /// The values of its joints, in machine coordinates of the spindle's nose, at a position of the axes with a tool of this length (mm).
     pub(crate) fn values(&self, machine: &Kinematics, at: &Position, tool_length: f64) -> Values {
         let offset = machine.to_machine(tool_length);

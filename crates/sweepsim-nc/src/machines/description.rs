@@ -49,6 +49,9 @@ pub struct MachineDescription {
     /// Whether programs are under tip control from the start.
     #[serde(default)]
     pub tip_control: bool,
+    /// Where tools are changed: rapids one after the other, each of the axes that it names, in machine coordinates and degrees.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tool_change: Vec<BTreeMap<char, f64>>,
     /// Its bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<BodyDescription>,
@@ -142,6 +145,12 @@ pub struct LinearAxis {
     /// Where it stands at the start, in machine coordinates.
     #[serde(default)]
     pub start: f64,
+    /// Where `G28` takes it, in machine coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub home: Option<f64>,
+    /// Where `G30` takes it, in machine coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_home: Option<f64>,
 }
 
 /// A rotary axis.
@@ -167,6 +176,12 @@ pub struct RotaryAxis {
     /// Where it stands at the start, in degrees.
     #[serde(default)]
     pub start: f64,
+    /// Where `G28` takes it, in degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub home: Option<f64>,
+    /// Where `G30` takes it, in degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_home: Option<f64>,
 }
 
 impl LinearAxis {
@@ -182,6 +197,8 @@ impl LinearAxis {
             acceleration: None,
             rapid_acceleration: None,
             start: 0.0,
+            home: None,
+            second_home: None,
         }
     }
 }
@@ -198,6 +215,8 @@ impl RotaryAxis {
             speed: None,
             acceleration: None,
             start: 0.0,
+            home: None,
+            second_home: None,
         }
     }
 

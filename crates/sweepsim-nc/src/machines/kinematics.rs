@@ -182,6 +182,7 @@ impl Kinematics {
             }
         }
         description.check_bodies()?;
+        description.check_places()?;
         let rotaries = Rotaries::new(joints.iter().map(|joint| (joint.letter, joint.axis)));
         Ok(Self {
             description,

@@ -15,6 +15,7 @@ mod frame;
 mod inverse;
 mod kinematics;
 mod machine;
+mod places;
 mod ready;
 mod ready_bodies;
 mod rotaries;

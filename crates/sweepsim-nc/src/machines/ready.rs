@@ -5,7 +5,7 @@ use super::error::MachineError;
 use super::ready_bodies::with_bodies;
 
 /// The names of the ready machines.
-pub(super) const NAMES: [&str; 12] = [
+pub(super) const NAMES: [&str; 13] = [
     "3-axis",
     "rotary-a",
     "rotary-b",
@@ -18,7 +18,11 @@ pub(super) const NAMES: [&str; 12] = [
     "head-a-table-c",
     "nutating-head-bc",
     "nutating-table-bc",
+    "mill-turn",
 ];
+
+/// The one whose part is in a chuck, before a head that comes from its side.
+pub(super) const MILL_TURN: &str = "mill-turn";
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -53,7 +57,7 @@ fn plain(name: &str) -> Option<MachineDescription> {
         "trunnion-ab" => (vec![at_zero('B', Y), at_zero('A', X).within(-120.0, 120.0)], vec![]),
         "head-bc" => (vec![], vec![in_head('C', Z), in_head('B', Y).within(-120.0, 120.0)]),
         "head-ac" => (vec![], vec![in_head('C', Z), in_head('A', X).within(-120.0, 120.0)]),
-        "head-b-table-c" => (vec![at_zero('C', Z)], vec![in_head('B', Y).within(-120.0, 120.0)]),
+        "head-b-table-c" | MILL_TURN => (vec![at_zero('C', Z)], vec![in_head('B', Y).within(-120.0, 120.0)]),
         "head-a-table-c" => (vec![at_zero('C', Z)], vec![in_head('A', X).within(-120.0, 120.0)]),
         "nutating-head-bc" => (vec![], vec![in_head('C', Z), in_head('B', NUTATING)]),
         "nutating-table-bc" => (vec![at_zero('C', Z), at_zero('B', NUTATING)], vec![]),

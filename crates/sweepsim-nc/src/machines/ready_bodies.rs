@@ -2,9 +2,12 @@
 //!
 //! A size is given after the machine's name: `trunnion-ac,table=320,travel=500x400x400,zero=60,length=120`.
 
+use std::collections::BTreeMap;
+
 use super::bodies::{BodyDescription, BodyShape, Carries};
 use super::description::{LinearAxis, MachineDescription};
 use super::error::MachineError;
+use super::ready::MILL_TURN;
 
 /// The sizes of a ready machine, in mm.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +76,12 @@ fn upright(from: f64, to: f64, radius: f64) -> BodyShape {
 /// The machine with limits and bodies.
 pub(super) fn with_bodies(mut machine: MachineDescription, words: &str) -> Result<MachineDescription, MachineError> {
     let sizes = Sizes::read(words)?;
-    let [x, y, z] = sizes.travel.map(|way| 0.5 * way);
-    let (half, floor) = (0.5 * sizes.table, -sizes.zero);
+    let [x, y, _] = sizes.travel.map(|way| 0.5 * way);
+    // The machine's zero is where the nose is with all axes at home: Z at its top.
+    let (half, floor) = (0.5 * sizes.table, -sizes.travel[2]);
+    let zero = floor + sizes.zero;
+    machine.part_zero = [0.0, 0.0, zero];
+    machine.table.iter_mut().for_each(|axis| axis.pivot[2] += zero);
     let letters = |axes: &[super::description::RotaryAxis]| axes.iter().map(|axis| axis.letter).collect::<String>();
     let (table, head) = (letters(&machine.table), letters(&machine.head));
     machine.tool_length = sizes.length;
@@ -86,17 +93,23 @@ pub(super) fn with_bodies(mut machine: MachineDescription, words: &str) -> Resul
     };
     let linear = |letter, limits, carries| {
         let mut axis = LinearAxis::new(letter);
-        (axis.limits, axis.carries) = (Some(limits), carries);
+        (axis.limits, axis.carries, axis.home) = (Some(limits), carries, Some(0.0));
         axis
     };
     // The nose gets down to the table.
     machine.linear = vec![
         linear('X', [-x, x], carries),
         linear('Y', [-y, y], carries),
-        linear('Z', [floor, floor + 2.0 * z], Carries::Tool),
+        linear('Z', [floor, 0.0], Carries::Tool),
     ];
-    machine.linear[2].start = floor + 2.0 * z;
-    let (bodies, lowest) = table_bodies(&machine, half, floor);
+    let rotary = machine.table.iter_mut().chain(&mut machine.head);
+    rotary.for_each(|axis| axis.home = Some(0.0));
+    machine.tool_change = vec![BTreeMap::from([('Z', 0.0)])];
+    if machine.name == MILL_TURN {
+        turn(&mut machine, [2.0 * x, y, half, floor]);
+        return Ok(machine);
+    }
+    let (bodies, lowest) = table_bodies(&machine, half, [floor, zero]);
     machine.bodies = bodies;
     let bed = block(
         [-x - half - 100.0, -y - half - 100.0, lowest - 220.0],
@@ -107,17 +120,40 @@ pub(super) fn with_bodies(mut machine: MachineDescription, words: &str) -> Resul
     if carries == Carries::Part {
         // A column behind the table, which goes back by half of Y's travel.
         let near = y + half + 40.0;
-        let column = block(
-            [-150.0, near, lowest - 20.0],
-            [150.0, near + 300.0, floor + 2.0 * z + 600.0],
-        );
+        let column = block([-150.0, near, lowest - 20.0], [150.0, near + 300.0, 600.0]);
         machine.bodies.push(body("column", "base", column));
     }
     Ok(machine)
 }
 
+/// A chuck before its headstock, and a head on a slide from the side: X goes from its home, where tools are changed, to
+/// a little beyond the middle.
+fn turn(machine: &mut MachineDescription, [x, y, half, floor]: [f64; 4]) {
+    (machine.linear[0].limits, machine.linear[0].home) = (Some([-0.1 * x, 0.9 * x]), Some(0.9 * x));
+    machine.tool_change.push(BTreeMap::from([('X', 0.9 * x)]));
+    let chuck = upright(floor - 60.0, floor, half);
+    let headstock = block(
+        [-half - 40.0, -half - 40.0, floor - 400.0],
+        [half + 40.0, half + 40.0, floor - 80.0],
+    );
+    // The slide is on the far side of the head, and the bed behind it.
+    let slide = block([-80.0, 75.0, 70.0], [480.0, 275.0, 230.0]);
+    let behind = y + 275.0 + 50.0;
+    let bed = block(
+        [-half - 200.0, behind, floor - 400.0],
+        [x + 500.0, behind + 300.0, 400.0],
+    );
+    machine.bodies = vec![
+        body("chuck", "C", chuck),
+        body("headstock", "base", headstock),
+        body("bed", "base", bed),
+        body("slide", "Z", slide),
+        body("spindle", "B", upright(0.0, 230.0, 65.0)),
+    ];
+}
+
 /// What carries the part, and how low it reaches.
-fn table_bodies(machine: &MachineDescription, half: f64, floor: f64) -> (Vec<BodyDescription>, f64) {
+fn table_bodies(machine: &MachineDescription, half: f64, [floor, zero]: [f64; 2]) -> (Vec<BodyDescription>, f64) {
     let round = |on: &str| body("table", on, upright(floor - 40.0, floor, half));
     match &machine.table[..] {
         [] => {
@@ -136,13 +172,13 @@ fn table_bodies(machine: &MachineDescription, half: f64, floor: f64) -> (Vec<Bod
                 point
             };
             let plate = BodyShape::Cylinder {
-                from: at(-half - 40.0, 0.0),
-                to: at(-half, 0.0),
+                from: at(-half - 40.0, zero),
+                to: at(-half, zero),
                 radius: 60.0,
             };
             let lowest = floor - 100.0;
             let mut low = at(-half - 200.0, lowest);
-            let mut high = at(-half - 50.0, 80.0);
+            let mut high = at(-half - 50.0, zero + 80.0);
             (low[1 - along], high[1 - along]) = (-90.0, 90.0);
             (
                 vec![body("plate", &name, plate), body("rotary", "base", block(low, high))],
@@ -165,12 +201,12 @@ fn table_bodies(machine: &MachineDescription, half: f64, floor: f64) -> (Vec<Bod
                 all.push(body(
                     name,
                     &on,
-                    block(corner(from, -60.0, floor - 50.0), corner(to, 60.0, 60.0)),
+                    block(corner(from, -60.0, floor - 50.0), corner(to, 60.0, zero + 60.0)),
                 ));
             }
             // However far it tilts.
-            let reach = low.hypot(half).max(60.0_f64.hypot(60.0));
-            (all, -reach)
+            let reach = (low - zero).hypot(half).max(60.0_f64.hypot(60.0));
+            (all, zero - reach)
         }
     }
 }

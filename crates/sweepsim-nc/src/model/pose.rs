@@ -32,6 +32,8 @@ pub struct ProgramPose {
     pub tip_control: bool,
     /// Whether the axes rest at the end of the block that this move is part of (`G9`, `G61`, Siemens's `G60`).
     pub exact_stop: bool,
+    /// Whether X, Y and Z of the machine are where its own coordinates say (`G53`, `G28`, a change of tools), wherever the part is.
+    pub fixed: [bool; 3],
     /// How the tool moves here, unless straight and by SLERP.
     way: Option<Arc<Move>>,
 }
@@ -52,6 +54,7 @@ impl ProgramPose {
             call: None,
             tip_control: true,
             exact_stop: false,
+            fixed: [false; 3],
             way: None,
         }
     }

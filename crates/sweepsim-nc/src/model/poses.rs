@@ -20,6 +20,7 @@ const WAY: u32 = 16;
 const FEED: u32 = 32;
 const PER_REVOLUTION: u32 = 64;
 const INVERSE_TIME: u32 = 128;
+const FIXED: [u32; 3] = [256, 512, 1024];
 
 /// The poses of a program in order, as a slice of [`ProgramPose`]s.
 ///
@@ -64,6 +65,7 @@ impl Packed {
             | flag(pose.tip_control, TIP_CONTROL)
             | flag(pose.exact_stop, EXACT_STOP)
             | flag(pose.feed.is_some(), FEED)
+            | (0..3).map(|k| flag(pose.fixed[k], FIXED[k])).sum::<u32>()
             | match pose.feed_mode {
                 FeedMode::PerMinute => 0,
                 FeedMode::PerRevolution => PER_REVOLUTION,
@@ -114,6 +116,7 @@ fn of_row(pose: Pose, row: &[f64; 6], way: impl FnOnce() -> Option<Move>) -> Pro
     pose.call = number(call);
     pose.tip_control = is(TIP_CONTROL);
     pose.exact_stop = is(EXACT_STOP);
+    pose.fixed = FIXED.map(is);
     if is(WAY) {
         pose.set_way(way().unwrap_or_default());
     }

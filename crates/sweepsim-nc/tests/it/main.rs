@@ -22,6 +22,7 @@ mod machines;
 mod okuma;
 mod packed;
 mod pieces;
+mod places;
 mod pockets;
 mod posted;
 mod programs;

@@ -171,6 +171,11 @@ impl Before {
         points
     }
 
+    /// Whether it is known to be convex.
+    pub fn is_convex(&self) -> bool {
+        matches!(self.shape, Shape::Block(_) | Shape::Cylinder { .. } | Shape::Ball(..))
+    }
+
     /// Whether all that is nearer to a point than a distance is in it, for certain.
     pub fn holds_around(&self, point: &Vector3<f64>, distance: f64) -> bool {
         self.shape.holds(point, distance)

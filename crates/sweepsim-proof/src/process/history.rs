@@ -34,6 +34,8 @@ const TRIED: usize = 4;
 const AXIS: f64 = 0.05;
 /// Steps of a search for the best time.
 const STEPS: usize = 32;
+/// Corners that are no farther outside of the stock are on its surface, in millimetres.
+const SKIN: f64 = 1e-9;
 /// How long about a good time the best one is looked for.
 const AROUND: f64 = 0.25;
 
@@ -126,6 +128,21 @@ impl History<'_> {
                 solid.boxes.around_first(count, (&low, &high), &mut away)
             })
         })
+    }
+
+    /// Whether the hull of some points, which are so near to their centre, is material, for certain.
+    pub fn is_whole(
+        &self,
+        mut corners: impl Iterator<Item = Vector3<f64>>,
+        centre: &Vector3<f64>,
+        moment: Moment,
+        radius: f64,
+    ) -> bool {
+        let was = match self.before.is_convex() {
+            true => corners.all(|corner| self.before.holds_around(&corner, -SKIN)),
+            false => self.before.holds_around(centre, radius),
+        };
+        was && self.misses(centre, moment, radius)
     }
 
     /// Whether all that is so near to a point is material, for certain.

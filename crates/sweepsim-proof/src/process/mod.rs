@@ -9,6 +9,7 @@
 
 mod history;
 mod known;
+mod remains;
 mod ring;
 mod samples;
 mod scene;
@@ -16,5 +17,6 @@ mod search;
 mod visit;
 mod zone;
 
+pub use remains::Remains;
 pub use scene::{Movers, Room, Work};
 pub use search::{Touched, touched, touched_from};

@@ -68,15 +68,7 @@ pub fn touched_from(
     };
     let (low, high) = (Vector3::from(low), Vector3::from(high));
     let solids: Vec<Vec<Convex>> = work.iter().map(Work::solids).collect();
-    let (mut size, mut cut) = (low.amax().max(high.amax()), Vec::with_capacity(work.len()));
-    for (own, solids) in work.iter().zip(&solids) {
-        let done = Cut::new(own, solids, room.deviation);
-        let reach = solids.iter().map(Convex::reach).fold(0.0, f64::max);
-        let far = |stretch: &Stretch| stretch.low.amax().max(stretch.high.amax());
-        size = done.stretches.iter().map(far).fold(size, f64::max) + reach;
-        cut.push(done);
-    }
-    let rounding = ROUNDING * size;
+    let (cut, rounding) = cuts(work, &solids, room.deviation, [low, high]);
     let courses = work.iter().zip(&cut);
     let history = History {
         before: Before::new(stock, 0.0)?,
@@ -104,14 +96,45 @@ impl Work<'_> {
     }
 }
 
+/// The stretches on which the cutters of all paths cut, within a deviation; and what rounding may do.
+pub(super) fn cuts(
+    work: &[Work],
+    solids: &[Vec<Convex>],
+    deviation: f64,
+    [low, high]: [Vector3<f64>; 2],
+) -> (Vec<Cut>, f64) {
+    let (mut size, mut cut) = (low.amax().max(high.amax()), Vec::with_capacity(work.len()));
+    for (own, solids) in work.iter().zip(solids) {
+        let done = Cut::new(own, solids, deviation);
+        let reach = solids.iter().map(Convex::reach).fold(0.0, f64::max);
+        let far = |stretch: &Stretch| stretch.low.amax().max(stretch.high.amax());
+        size = done.stretches.iter().map(far).fold(size, f64::max) + reach;
+        cut.push(done);
+    }
+    (cut, ROUNDING * size)
+}
+
 /// The stretches on which a cutter cuts.
-struct Cut {
-    stretches: Vec<Stretch>,
+pub(super) struct Cut {
+    pub stretches: Vec<Stretch>,
     /// For each move, how many there are before it.
     first: Vec<u32>,
 }
 
 impl Cut {
+    /// How many of them end before a time of a move.
+    pub fn before(&self, number: usize, time: f64) -> usize {
+        let first = self
+            .first
+            .get(number)
+            .map_or(self.stretches.len(), |first| *first as usize);
+        let own = self.stretches[first..].iter();
+        first
+            + own
+                .take_while(|own| own.number == number && own.times[1] <= time)
+                .count()
+    }
+
     fn new(work: &Work, solids: &[Convex], deviation: f64) -> Self {
         let moves = work.cutter.path.moves();
         let (mut stretches, mut first) = (Vec::new(), Vec::with_capacity(moves));

@@ -12,7 +12,7 @@ mod spline_motion;
 
 pub use as_wear::AsWear;
 pub use columns::{Flags, Origins, Seconds};
-pub use machine::OnMachine;
+pub use machine::{OnMachine, may_touch, must_stay_apart};
 
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use crate::session::Session;
 use crate::verify::work;
 use sweepsim_formats::{AxisTravel, JobPath, Report};
 use sweepsim_machine::Course;
-use sweepsim_nc::{AxesCourse, Kinematics};
+use sweepsim_nc::AxesCourse;
 
 /// Curved courses of axes are looked at so many times in a move: what they go beyond that is left out here, though not
 /// where limits are checked.
@@ -47,7 +47,10 @@ pub(in crate::verify) fn travel(session: Session) -> (Vec<AxisTravel>, Option<St
             for step in 0..=steps {
                 let values = course.at(piece, step as f64 / steps as f64);
                 for (letter, value) in course.chain().letters().iter().zip(values) {
-                    reach(&mut axes, course.machine(), (*letter, value), place);
+                    let [from, to] = course.fixed(piece, *letter);
+                    // Homes may be at a limit.
+                    let is_fixed = if step == 0 { from } else { step == steps && to };
+                    reach(&mut axes, course, (*letter, value), is_fixed, place);
                 }
             }
             if let Some((letter, turn, tilt)) = flip(path, course, piece, number) {
@@ -75,8 +78,9 @@ pub(in crate::verify) fn travel(session: Session) -> (Vec<AxisTravel>, Option<St
 /// Widens the travel of an axis to a value.
 fn reach(
     axes: &mut Vec<(AxisTravel, f64)>,
-    machine: &Kinematics,
+    course: &AxesCourse,
     (letter, value): (char, f64),
+    is_fixed: bool,
     place: impl Fn() -> Option<(String, usize)>,
 ) {
     let number = axes
@@ -84,7 +88,7 @@ fn reach(
         .position(|(axis, _)| axis.letter == letter)
         .unwrap_or_else(|| {
             let mut new = AxisTravel::default();
-            (new.letter, new.range, new.limits) = (letter, [value; 2], limits(machine, letter));
+            (new.letter, new.range, new.limits) = (letter, [value; 2], course.limits(letter));
             axes.push((new, f64::INFINITY));
             axes.len() - 1
         });
@@ -94,17 +98,11 @@ fn reach(
         Some([low, high]) => (value - low).min(high - value),
         None => -value.abs(),
     };
-    if room < *least {
+    if room < *least && !is_fixed {
         *least = room;
         axis.room = axis.limits.map(|_| room);
         (axis.file, axis.line) = place().unzip();
     }
-}
-
-fn limits(machine: &Kinematics, letter: char) -> Option<[f64; 2]> {
-    let linear = machine.linear().iter().find(|axis| axis.letter == letter);
-    let rotary = || machine.rotary().find(|axis| axis.letter == letter);
-    linear.map_or_else(|| rotary()?.limits, |axis| axis.limits)
 }
 
 /// A rotary axis that turns far while the tool hardly turns, under tip control: its letter, its turn and that of the

@@ -5,9 +5,10 @@ use crate::verify::texts::name_of;
 use nalgebra::{Unit, Vector3};
 use std::collections::BTreeSet;
 use sweepsim_dexel::{Frame, Stock};
-use sweepsim_formats::{Job, JobPath, OnMachine};
+use sweepsim_formats::{Job, JobPath, may_touch, must_stay_apart};
 use sweepsim_machine::{Body, Convex};
 use sweepsim_motion::Tool;
+use sweepsim_nc::AxesCourse;
 
 /// All bodies during a path, and the pairs of them that must stay apart.
 pub(super) struct Crowd {
@@ -15,14 +16,16 @@ pub(super) struct Crowd {
     pub pairs: Vec<(usize, usize)>,
     /// Bodies that are known only by what they are within.
     pub loose: BTreeSet<usize>,
-    /// The numbers of what is on the table; before it are the machine's bodies, after it what the spindle holds.
+    /// The numbers of the stock as it was before the first cut, and
+    pub stock: std::ops::Range<usize>,
+    /// of all that is on the table; before it are the machine's bodies, after it what the spindle holds.
     table: std::ops::Range<usize>,
 }
 
 impl Crowd {
-    pub fn new(job: &Job, path: &JobPath, on: &OnMachine) -> Self {
-        let (chain, description) = (on.course.chain(), on.course.machine().description());
-        let mut bodies = on.bodies.to_vec();
+    pub fn new(job: &Job, path: &JobPath, machine: &[Body], course: &AxesCourse) -> Self {
+        let (chain, description) = (course.chain(), course.machine().description());
+        let mut bodies = machine.to_vec();
         let mut loose = BTreeSet::new();
         let own = bodies.len();
         let zero = Vector3::from(description.part_zero);
@@ -35,7 +38,8 @@ impl Crowd {
         let on_table = std::iter::once(("raw stock".to_owned(), &job.stock));
         let fixtures = fixtures.iter().enumerate();
         let on_table = on_table.chain(fixtures.map(|(k, solid)| (format!("fixture {}", k + 1), solid)));
-        for (name, stock) in on_table {
+        let mut stocks = own..own;
+        for (number, (name, stock)) in on_table.enumerate() {
             let mut rough = false;
             for solid in placed.solids(stock, &mut rough) {
                 let body = Body::new(name.clone(), chain.part(), solid);
@@ -44,10 +48,13 @@ impl Crowd {
                 }
                 bodies.extend(body);
             }
+            if number == 0 {
+                stocks.end = bodies.len();
+            }
         }
         let table = own..bodies.len();
         // What the spindle holds: its tip is a tool's length below the nose.
-        let tip = [0.0, 0.0, -on.course.tool_length()];
+        let tip = [0.0, 0.0, -course.tool_length()];
         let tool = job
             .tools
             .get(&path.tool)
@@ -66,18 +73,16 @@ impl Crowd {
                 Convex::cones(tip, Vector3::z(), &outline),
             ));
         }
-        // Links that an axis joins touch.
-        let neighbours = |a: usize, b: usize| a.abs_diff(b) <= 1;
-        let may_touch = |a: &str, b: &str| {
-            let same = |(c, d): &(String, String)| (c == a && d == b) || (c == b && d == a);
-            description.may_touch.iter().any(same)
-        };
         let mut pairs = Vec::new();
         for a in 0..own {
             for b in a + 1..bodies.len() {
                 let (first, second) = (&bodies[a], &bodies[b]);
-                let apart = first.link != second.link && !may_touch(&first.name, &second.name);
-                if apart && (b >= own || !neighbours(first.link, second.link)) {
+                let apart = if b < own {
+                    must_stay_apart(description, first, second)
+                } else {
+                    first.link != second.link && !may_touch(description, first, second)
+                };
+                if apart {
                     pairs.push((a, b));
                 }
             }
@@ -86,8 +91,26 @@ impl Crowd {
             bodies,
             pairs,
             loose,
+            stock: stocks,
             table,
         }
+    }
+
+    /// Whether a body is on the table: the stock, or a fixture.
+    pub fn is_on_table(&self, body: usize) -> bool {
+        self.table.contains(&body)
+    }
+
+    /// Lower and upper corner of a box around the stock, on the part's link.
+    pub fn extent_of_stock(&self) -> [[f64; 3]; 2] {
+        let all = self.bodies[self.stock.clone()].iter().map(Body::extent);
+        let around = |[low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]| {
+            [
+                [0, 1, 2].map(|k| low[k].min(a[k])),
+                [0, 1, 2].map(|k| high[k].max(b[k])),
+            ]
+        };
+        all.reduce(around).unwrap_or_default()
     }
 
     /// How far a body may be beside its place on its link, if the part may be moved and the tool longer or shorter.

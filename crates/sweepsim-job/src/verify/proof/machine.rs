@@ -1,10 +1,9 @@
 //! What is proven of the machine's bodies: they stay apart from each other, and from all that moves with the part and
 //! the tool, at every time of every path.
 //!
-//! Tools, shanks and holders beside the workpiece and fixtures are the subject of other statements. The stock is looked
-//! at as it was before the first cut.
+//! Tools, shanks and holders beside the workpiece and fixtures are the subject of other statements.
 
-use super::crowd::Crowd;
+use super::pairs::{Judged, OnPath, Range, judged};
 use super::{LISTED, Proof, Proven};
 use crate::base::{JobError, words};
 use crate::session::Session;
@@ -15,28 +14,23 @@ use std::collections::BTreeSet;
 use sweepsim_formats::{
     Job, JobPath, Measure, OnMachine, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness,
 };
-use sweepsim_machine::{Contact, Course, Limits, Outcome, Values, contacts};
-
-/// The most distances that are computed for a pair of bodies on a path: so many, and so many for each move.
-const TESTS: usize = 100_000;
-const TESTS_OF_MOVE: usize = 200;
+use sweepsim_machine::{Contact, Outcome};
 
 /// The statement about the machines of a job, if any has bodies.
 pub(super) fn apart(proof: &Proof, texts: &mut ProgramTexts) -> Result<Option<Proven>, JobError> {
     let job = proof.session.job;
     let clearance = |on: &OnMachine| on.course.machine().description().clearance;
     let with_bodies = || {
-        job.paths.iter().enumerate().filter_map(|(number, path)| {
-            let on = path.on_machine.as_ref().filter(|on| !on.bodies.is_empty())?;
-            Some((number, path, on))
-        })
+        let all = job.paths.iter().enumerate();
+        let on = all.filter_map(|(number, path)| Some((number, path.on_machine.as_ref()?)));
+        on.filter(|(_, on)| !on.bodies.is_empty())
     };
     let judging = &proof.session.request.judging;
     let range = Range {
         offset: judging.offset_range,
         length: judging.length_range,
     };
-    let limit = with_bodies().map(|(.., on)| clearance(on)).reduce(f64::max);
+    let limit = with_bodies().map(|(_, on)| clearance(on)).reduce(f64::max);
     let mut machines = job.paths.iter().filter_map(|path| path.on_machine.as_ref());
     let first = machines.next().filter(|_| limit.is_some() || range.is_some());
     let Some(first) = first else {
@@ -44,71 +38,37 @@ pub(super) fn apart(proof: &Proof, texts: &mut ProgramTexts) -> Result<Option<Pr
     };
     let mut all = Seen::new(limit.unwrap_or_default());
     if range.is_some() {
-        all.narrow = range.narrow(proof.session, first);
+        all.narrow = narrow(&range, proof.session, first);
     }
-    for (number, path, on) in with_bodies() {
-        if proof.session.monitor.cancelled() {
-            return Err(JobError::Cancelled);
-        }
-        let crowd = Crowd::new(job, path, on);
-        let mut limits = Limits::new(clearance(on));
-        limits.tests = TESTS + TESTS_OF_MOVE * on.course.moves();
-        limits.slack = range.spread(on);
-        let beside = |pair: &(usize, usize)| crowd.beside(pair.1, range.offset, range.length);
-        let mut found = Vec::with_capacity(crowd.pairs.len());
-        for own in crowd.pairs.chunk_by(|a, b| beside(a) == beside(b)) {
-            limits.clearance = clearance(on) + own.first().map_or(0.0, beside);
-            let linkage = on.course.chain().linkage();
-            found.extend(contacts(linkage, &crowd.bodies, own, &on.course, &limits));
-        }
-        for (&(a, b), outcome) in crowd.pairs.iter().zip(found) {
-            let names = [a, b].map(|body| crowd.bodies[body].name.as_str());
-            let is_known = ![a, b].iter().any(|body| crowd.loose.contains(body));
-            // With a range, bodies may be too near at some place of the part only, if they don't touch at this one.
-            let touches = matches!(&outcome, Outcome::Contact(contact) if contact.distance == 0.0);
-            let is_sure = is_known && (touches || !range.is_some());
-            all.add(job, texts, (number, names), is_sure, &outcome);
-        }
+    let mut paths = Vec::new();
+    for (number, on) in with_bodies() {
+        paths.extend(OnPath::new(job, number, &on.course, range));
+    }
+    for judged in judged(proof, &paths)? {
+        all.add(job, texts, &judged);
     }
     Ok(Some(all.said()))
 }
 
-/// How far the part may be from its place, and how much longer or shorter a tool.
-struct Range {
-    offset: [f64; 3],
-    length: f64,
-}
-
-impl Range {
-    fn is_some(&self) -> bool {
-        self.length > 0.0 || self.offset.iter().any(|way| *way > 0.0)
-    }
-
-    /// How far joints may be from their course.
-    fn spread(&self, on: &OnMachine) -> Values {
-        on.course.chain().spread(on.course.machine(), self.offset, self.length)
-    }
-
-    /// Axes that have not enough room to their limits.
-    fn narrow(&self, session: Session, on: &OnMachine) -> Vec<String> {
-        let spread = self.spread(on);
-        let needed = |letter: char| {
-            let joint = on.course.chain().letters().iter().position(|own| *own == letter);
-            joint.map_or(0.0, |joint| spread[joint])
-        };
-        let (axes, _) = axes::travel(session);
-        let narrow = axes.iter().filter_map(|axis| {
-            let room = axis.room.filter(|room| *room < needed(axis.letter))?;
-            let place = axis.file.as_ref().zip(axis.line);
-            let place = place.map_or_else(String::new, |(file, line)| format!(" at {file}:{line}"));
-            let [room, needed] = [room, needed(axis.letter)].map(words::length);
-            Some(format!(
-                "{} has {room} mm to its limit{place}, and may need {needed} mm",
-                axis.letter
-            ))
-        });
-        narrow.collect()
-    }
+/// Axes that have not enough room to their limits.
+fn narrow(range: &Range, session: Session, on: &OnMachine) -> Vec<String> {
+    let spread = range.spread(&on.course);
+    let needed = |letter: char| {
+        let joint = on.course.chain().letters().iter().position(|own| *own == letter);
+        joint.map_or(0.0, |joint| spread[joint])
+    };
+    let (axes, _) = axes::travel(session);
+    let narrow = axes.iter().filter_map(|axis| {
+        let room = axis.room.filter(|room| *room < needed(axis.letter))?;
+        let place = axis.file.as_ref().zip(axis.line);
+        let place = place.map_or_else(String::new, |(file, line)| format!(" at {file}:{line}"));
+        let [room, needed] = [room, needed(axis.letter)].map(words::length);
+        Some(format!(
+            "{} has {room} mm to its limit{place}, and may need {needed} mm",
+            axis.letter
+        ))
+    });
+    narrow.collect()
 }
 
 /// What was seen of all pairs on all paths.
@@ -136,19 +96,14 @@ impl Seen {
         }
     }
 
-    fn add(
-        &mut self,
-        job: &Job,
-        texts: &mut ProgramTexts,
-        (number, names): (usize, [&str; 2]),
-        is_sure: bool,
-        outcome: &Outcome,
-    ) {
-        match outcome {
+    fn add(&mut self, job: &Job, texts: &mut ProgramTexts, judged: &Judged) {
+        let [a, b] = &judged.names;
+        let pair = (judged.path, [a.as_str(), b.as_str()]);
+        match &judged.outcome {
             Outcome::Apart(least) => self.least = self.least.min(*least),
-            Outcome::Contact(contact) if is_sure => self.touch(job, texts, (number, names), contact),
-            Outcome::Contact(contact) => self.open(job, texts, (number, names), (contact.number, contact.time)),
-            Outcome::Open(piece, time) => self.open(job, texts, (number, names), (*piece, *time)),
+            Outcome::Contact(contact) if judged.is_sure => self.touch(job, texts, pair, contact),
+            Outcome::Contact(contact) => self.open(job, texts, pair, (contact.number, contact.time)),
+            Outcome::Open(piece, time) => self.open(job, texts, pair, (*piece, *time)),
         }
     }
 

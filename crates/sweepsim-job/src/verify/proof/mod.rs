@@ -4,9 +4,12 @@ mod bodies;
 mod crowd;
 mod excess;
 mod machine;
+mod pairs;
+mod place;
 mod process;
 mod registers;
 
+pub(super) use place::propose;
 pub(super) use registers::compare as compare_registers;
 
 use super::asked::solids;

@@ -39,7 +39,7 @@ struct Solids {
 }
 
 /// Why a move must not cut, by the kind of finding if it does.
-fn kept_from(path: &JobPath, number: usize) -> Option<&'static str> {
+pub(super) fn kept_from(path: &JobPath, number: usize) -> Option<&'static str> {
     let why = [
         ("rapid", &path.rapid),
         ("spindle", &path.spindle_stopped),
@@ -49,7 +49,7 @@ fn kept_from(path: &JobPath, number: usize) -> Option<&'static str> {
         .find_map(|(kind, flags)| flags.get(number).then_some(kind))
 }
 
-fn of_tool(all: &BTreeMap<u32, Vec<Convex>>, tool: u32) -> &[Convex] {
+pub(super) fn of_tool(all: &BTreeMap<u32, Vec<Convex>>, tool: u32) -> &[Convex] {
     all.get(&tool).map_or(&[], Vec::as_slice)
 }
 

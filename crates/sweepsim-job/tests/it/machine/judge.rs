@@ -33,6 +33,8 @@ pub struct Judge {
     /// The number of hulls that belong to the machine.
     own: usize,
     length: f64,
+    /// Where the part's zero is in machine coordinates.
+    zero: [f64; 3],
 }
 
 impl Judge {
@@ -82,7 +84,10 @@ impl Judge {
         hulls.push(Hull {
             name: "raw stock".into(),
             link: 0,
-            points: corners(stock[0], stock[1]),
+            points: corners(
+                [0, 1, 2].map(|k| stock[0][k] + machine.part_zero[k]),
+                [0, 1, 2].map(|k| stock[1][k] + machine.part_zero[k]),
+            ),
         });
         let ends = [0.0, height].map(|z| Vector3::new(0.0, 0.0, z - machine.tool_length));
         let cutter = ends.iter().flat_map(|end| circle(*end, Vector3::z(), radius)).collect();
@@ -96,6 +101,7 @@ impl Judge {
             hulls,
             own,
             length: machine.tool_length,
+            zero: machine.part_zero,
         }
     }
 
@@ -104,8 +110,11 @@ impl Judge {
         let mut all = Isometry3::identity();
         for (letter, axis, pivot, _) in &self.joints[..link] {
             all *= match letter {
-                'X' | 'Y' => Isometry3::from(Translation3::from(axis * xyz[*letter as usize - 'X' as usize])),
-                'Z' => Isometry3::from(Translation3::from(axis * (xyz[2] + self.length))),
+                'X'..='Z' => {
+                    let k = *letter as usize - 'X' as usize;
+                    let length = if k == 2 { self.length } else { 0.0 };
+                    Isometry3::from(Translation3::from(axis * (xyz[k] + self.zero[k] + length)))
+                }
                 _ => {
                     let angle = abc[*letter as usize - 'A' as usize].to_radians();
                     let turn = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(*axis), angle);
@@ -129,25 +138,77 @@ impl Judge {
         pairs
     }
 
+    /// The points of a hull, in the coordinates of the part.
+    fn seen(&self, n: usize, at: [[f64; 3]; 2]) -> Vec<Vector3<f64>> {
+        let frame = self.frame(self.hulls[n].link, at);
+        let points = self.hulls[n].points.iter();
+        points.map(|p| (frame * Point3::from(*p)).coords).collect()
+    }
+
     /// Bounds of the distance of two hulls.
     pub fn apart(&self, (a, b): (usize, usize), at: [[f64; 3]; 2]) -> [f64; 2] {
-        let seen = |n: usize| -> Vec<Vector3<f64>> {
-            let frame = self.frame(self.hulls[n].link, at);
-            self.hulls[n]
-                .points
-                .iter()
-                .map(|p| (frame * Point3::from(*p)).coords)
-                .collect()
+        Self::between(&self.seen(a, at), &self.seen(b, at))
+    }
+
+    /// Points of the stock that a move leaves of those that are left.
+    pub fn cut(
+        &self,
+        left: &mut Vec<Vector3<f64>>,
+        places: impl Iterator<Item = [[f64; 3]; 2]>,
+        radius: f64,
+        height: f64,
+    ) {
+        for at in places {
+            let from_part = self.frame(self.joints.len(), at).inverse();
+            left.retain(|point| {
+                let own = (from_part * Point3::from(*point)).coords;
+                let up = own.z + self.length;
+                !(own.xy().norm() <= radius && (0.0..=height).contains(&up))
+            });
+        }
+    }
+
+    /// How near the nearest of some points is to a hull, from above.
+    pub fn nearest(&self, hull: usize, points: &[Vector3<f64>], at: [[f64; 3]; 2]) -> f64 {
+        let own = self.seen(hull, at);
+        let (mut low, mut high) = (own[0], own[0]);
+        for point in &own {
+            (low, high) = (low.inf(point), high.sup(point));
+        }
+        let near = points.iter().filter(|p| (*p - p.sup(&low).inf(&high)).norm() < 10.0);
+        near.map(|point| Self::between(&own, std::slice::from_ref(point))[1])
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a pair is of the stock.
+    pub fn is_stock(&self, (_, b): (usize, usize)) -> bool {
+        b == self.own
+    }
+
+    /// A point each 5 mm in the stock.
+    pub fn points_of_stock(&self, [low, high]: [[f64; 3]; 2]) -> Vec<Vector3<f64>> {
+        let along = |k: usize| {
+            let steps = ((high[k] - low[k]) / 5.0) as usize;
+            (0..steps).map(move |n| low[k] + self.zero[k] + 5.0 * n as f64 + 2.5)
         };
-        let (p, q) = (seen(a), seen(b));
+        let mut all = Vec::new();
+        for x in along(0) {
+            for y in along(1) {
+                all.extend(along(2).map(|z| Vector3::new(x, y, z)));
+            }
+        }
+        all
+    }
+
+    fn between(p: &[Vector3<f64>], q: &[Vector3<f64>]) -> [f64; 2] {
         let nearest = |points: &[Vector3<f64>], u: &Vector3<f64>| {
             *points.iter().min_by(|a, b| a.dot(u).total_cmp(&b.dot(u))).unwrap()
         };
         let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len() as f64;
-        let mut v = mean(&q) - mean(&p);
+        let mut v = mean(q) - mean(p);
         let mut low = f64::NEG_INFINITY;
         for _ in 0..400 {
-            let s = nearest(&q, &v) - nearest(&p, &-v);
+            let s = nearest(q, &v) - nearest(p, &-v);
             low = low.max(s.dot(&v) / v.norm());
             if v.norm() - low < 0.02 || low > 5.0 {
                 break;

@@ -1,53 +1,42 @@
-//! Random programs on ready machines with bodies, judged by positions that are close in time.
-//!
-//! The judge has its own chain of turns and shifts, and its own distance of convex hulls: their closest points by the
-//! steps of M. Frank and P. Wolfe (1956), which bound it from both sides.
+//! Bodies of machines, in jobs.
 
+mod crashes;
 mod judge;
-
-use judge::Judge;
+mod offsets;
+mod places;
+mod stock;
 
 use std::fmt::Write;
 use sweepsim_job::dexel::{Stock, TriangleSoup};
 use sweepsim_job::motion::Tool;
-use sweepsim_job::{DialectOptions, Judging, Memory, Outcome, Output, ProgramOptions, Request, StatementState};
+use sweepsim_job::{
+    DialectOptions, JobError, Judging, Memory, Outcome, Output, ProgramOptions, Request, StatementState,
+};
 use sweepsim_nc::Machine;
 
 const SIZES: &str = ",table=300,travel=600x500x500,zero=50,length=100";
-const MACHINES: [&str; 6] = [
-    "3-axis",
-    "rotary-a",
-    "trunnion-ac",
-    "trunnion-bc",
-    "head-bc",
-    "head-b-table-c",
-];
-/// Steps of the judge in each move.
-const STEPS: usize = 60;
-
-/// Numbers of no pattern.
-struct Random(u64);
-
-impl Random {
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-}
-
 fn run(machine: &str, program: &str, stock: [[f64; 3]; 2]) -> Outcome {
     judged(machine, program, stock, Judging::default())
 }
 
+fn planned(machine: &str, program: &str, stock: [[f64; 3]; 2]) -> Result<(), JobError> {
+    request(machine, program, stock, Judging::default()).plan().map(|_| ())
+}
+
 fn judged(machine: &str, program: &str, stock: [[f64; 3]; 2], judging: Judging) -> Outcome {
+    request(machine, program, stock, judging)
+        .plan()
+        .unwrap()
+        .run(&())
+        .unwrap()
+}
+
+fn request(machine: &str, program: &str, stock: [[f64; 3]; 2], judging: Judging) -> Request {
     let mut dialect = DialectOptions::default();
     dialect.machine = Some(machine.to_owned());
     let mut options = ProgramOptions::default();
     options.dialect = dialect;
-    let request = Request::from_program("crash.nc", program)
+    Request::from_program("crash.nc", program)
         .program(options)
         .tool(1, Tool::flat(5.0, 60.0).unwrap())
         .stock(Stock::Block {
@@ -55,131 +44,7 @@ fn judged(machine: &str, program: &str, stock: [[f64; 3]; 2], judging: Judging) 
             max: stock[1],
         })
         .cells([8, 8])
-        .judging(judging);
-    request.plan().unwrap().run(&()).unwrap()
-}
-
-/// Compares the first contact of each pair with what the judge sees. Returns how many programs had one, and how many
-/// had none.
-fn compare(programs: u64) -> [usize; 2] {
-    let stock = [[-40.0, -30.0, -50.0], [40.0, 30.0, 0.0]];
-    let mut counts = [0; 2];
-    for number in 0..programs {
-        let mut random = Random(number + 1);
-        let name = MACHINES[number as usize % MACHINES.len()];
-        let full = format!("{name}{SIZES}");
-        let machine = Machine::named(&full).expect("a machine").kinematics.expect("axes");
-        let machine = machine.description();
-        let judge = Judge::new(machine, stock, 5.0, 60.0);
-        let letters: Vec<char> = machine
-            .table
-            .iter()
-            .chain(&machine.head)
-            .map(|axis| axis.letter)
-            .collect();
-        // Moves in a room that is safe, or not quite.
-        let deep = if number % 2 == 0 { 60.0 } else { -140.0 };
-        let mut at = [[0.0, 0.0, 300.0], [0.0; 3]];
-        let mut program = "G21 G90\nT1 M6\nS1000 M3\nG1 X0 Y0 Z300 F5000\n".to_owned();
-        let mut moves = Vec::new();
-        for _ in 0..12 {
-            let mut to = at;
-            match random.within(0.0, 3.0) as usize {
-                0 if !letters.is_empty() => {
-                    let letter = letters[random.within(0.0, letters.len() as f64) as usize];
-                    let most = if letter == 'C' { 360.0 } else { 110.0 };
-                    to[1][letter as usize - 'A' as usize] = random.within(-most, most).round();
-                }
-                1 => to[0][2] = random.within(deep, 300.0).round(),
-                _ => {
-                    to[0] = [
-                        random.within(-250.0, 250.0).round(),
-                        random.within(-200.0, 200.0).round(),
-                        to[0][2],
-                    ]
-                }
-            }
-            write!(program, "G1 X{} Y{} Z{}", to[0][0], to[0][1], to[0][2]).unwrap();
-            for letter in &letters {
-                write!(program, " {letter}{}", to[1][*letter as usize - 'A' as usize]).unwrap();
-            }
-            program.push('\n');
-            moves.push((5 + moves.len(), at, to));
-            at = to;
-        }
-        program += "M30\n";
-        let outcome = run(&full, &program, stock);
-        let statements = outcome.report().statements.as_ref().expect("proofs").iter();
-        let statement = { statements }
-            .find(|statement| statement.about == "machine")
-            .expect("bodies");
-        let found: Vec<(String, usize)> = outcome
-            .findings()
-            .iter()
-            .filter(|finding| finding.kind == "machine")
-            .map(|finding| (finding.detail.clone().expect("names"), finding.line.expect("a line")))
-            .collect();
-        let mut touched = 0;
-        for pair in judge.pairs() {
-            let names = format!("{} meets {}", judge.hulls[pair.0].name, judge.hulls[pair.1].name);
-            let first = moves.iter().find_map(|(line, from, to)| {
-                let at = |k: usize| {
-                    let s = k as f64 / STEPS as f64;
-                    [0, 1].map(|n| [0, 1, 2].map(|k| from[n][k] + s * (to[n][k] - from[n][k])))
-                };
-                (0..=STEPS).find_map(|k| (judge.apart(pair, at(k))[1] < 0.05).then_some(*line))
-            });
-            let own = found.iter().find(|(detail, _)| detail.starts_with(&names));
-            match (first, own) {
-                (Some(line), Some((_, said))) => {
-                    // A contact between its times may be earlier.
-                    assert!(
-                        *said <= line,
-                        "{name} {number}: {names} in line {said}, not {line}\n{program}"
-                    );
-                    touched += 1;
-                }
-                (Some(line), None) => panic!("{name} {number}: {names} in line {line} is not found\n{program}"),
-                (None, Some((_, said))) => {
-                    // Nearer than a few millimetres at a time of the judge, if not in contact.
-                    let (_, from, to) = moves.iter().find(|(line, ..)| line == said).expect("a move");
-                    let at = |k: usize| {
-                        let s = k as f64 / 2000.0;
-                        [0, 1].map(|n| [0, 1, 2].map(|k| from[n][k] + s * (to[n][k] - from[n][k])))
-                    };
-                    let least = (0..=2000)
-                        .map(|k| judge.apart(pair, at(k))[0])
-                        .fold(f64::INFINITY, f64::min);
-                    assert!(
-                        least < 0.5,
-                        "{name} {number}: {names} in line {said}, {least} mm apart\n{program}"
-                    );
-                }
-                (None, None) => {}
-            }
-        }
-        match statement.state {
-            StatementState::Refuted => assert!(!found.is_empty()),
-            StatementState::Proven => assert_eq!((touched, found.len()), (0, 0)),
-            _ => panic!("{name} {number}: {:?}\n{program}", statement.reason),
-        }
-        counts[usize::from(found.is_empty())] += 1;
-    }
-    counts
-}
-
-#[test]
-fn crashes_are_found_at_their_lines() {
-    let [crashed, right] = compare(36);
-    assert!(crashed > 8 && right > 8, "{crashed} {right}");
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn crashes_of_many_programs_are_found_at_their_lines() {
-    let [crashed, right] = compare(400);
-    println!("{crashed} programs with a collision, {right} without");
-    assert!(crashed > 100 && right > 100, "{crashed} {right}");
+        .judging(judging)
 }
 
 /// The page has the machine with what its axes do, and when its bodies meet.
@@ -191,6 +56,9 @@ fn the_page_shows_the_machine() {
     let mut memory = Memory::default();
     outcome.write_to(&mut memory, &[Output::Report], &()).unwrap();
     let page = String::from_utf8_lossy(memory.0.get("report.html").expect("a page")).into_owned();
+    // A plot of each axis, with both limits of all but C.
+    let counted = |what: &str| page.matches(what).count();
+    assert_eq!((counted("class=\"way\""), counted("class=\"reach\"")), (5, 8));
     let head = page
         .split("id=\"head\">")
         .nth(1)
@@ -311,7 +179,7 @@ fn bodies_from_files_are_closed() {
         let spindle = r#"(name: "spindle", on: "Z", shape: Cylinder(from: (0, 0, 0), to: (0, 0, 100), radius: 40))"#;
         let body = format!(r#"(name: "guard", on: "base", shape: File("{guard}"))"#);
         let table = "(name: \"table\", on: \"X\", shape: Block(min: (-1, -1, -9), max: (1, 1, -8)))";
-        let linear = "(letter: 'X', carries: Part), (letter: 'Y'), (letter: 'Z')";
+        let linear = "(letter: 'X', carries: Part), (letter: 'Y'), (letter: 'Z', home: 200)";
         let machine = format!(
             "Machine(name: \"mill\", tool_length: 20, linear: [{linear}], bodies: [{body}, {spindle}, {table}], may_touch: [(\"guard\", \"table\")])"
         );

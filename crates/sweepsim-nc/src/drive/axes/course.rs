@@ -12,29 +12,35 @@ use crate::model::pose::ProgramPose;
 /// The course of the joints of a machine along a path: of each move, and where a rapid may be made in two ways, of both.
 #[derive(Clone, Debug)]
 pub struct AxesCourse {
-    machine: Arc<Kinematics>,
-    chain: Chain,
-    tool_length: f64,
-    pieces: Vec<Piece>,
+    pub(super) machine: Arc<Kinematics>,
+    pub(super) chain: Chain,
+    pub(super) tool_length: f64,
+    pub(super) pieces: Vec<Piece>,
+    /// Of the last pose: [`ProgramPose::fixed`].
+    pub(super) fixed: [bool; 3],
 }
 
 /// A part of a move in which the joints go straight, or the tip goes its own way.
 #[derive(Clone, Debug)]
-struct Piece {
-    from: Values,
-    to: Values,
+pub(super) struct Piece {
+    pub from: Values,
+    pub to: Values,
     /// The move, and whether it is the dog-leg that the move may be.
-    number: u32,
-    other: bool,
-    joined: bool,
+    pub number: u32,
+    pub other: bool,
+    pub joined: bool,
+    /// Whether it begins at a corner of a dog-leg.
+    pub corner: bool,
     /// Times of the move that it begins and ends at.
-    share: [f64; 2],
-    bent: Option<Box<Bent>>,
+    pub share: [f64; 2],
+    /// Whether X, Y and Z are where the machine's own coordinates say, at the start and at the end.
+    pub fixed: [[bool; 3]; 2],
+    pub bent: Option<Box<Bent>>,
 }
 
 /// The tip on its way while the rotary axes turn evenly.
 #[derive(Clone, Debug)]
-struct Bent {
+pub(super) struct Bent {
     tips: [[f64; 3]; 2],
     arc: Option<TipArc>,
     from: Position,
@@ -57,7 +63,9 @@ impl AxesCourse {
             number: 0,
             other: false,
             joined: false,
+            corner: false,
             share: [0.0; 2],
+            fixed: [start.fixed; 2],
             bent: None,
         };
         Self {
@@ -65,6 +73,7 @@ impl AxesCourse {
             chain,
             tool_length,
             pieces: vec![still],
+            fixed: start.fixed,
         }
     }
 
@@ -97,12 +106,15 @@ impl AxesCourse {
         };
         let even = !end.tip_control && arc.is_none();
         let bent = (arc.is_some() || turns && !even).then(|| Bent::new(&self.machine, (start, from), (end, to), arc));
+        let fixed = [std::mem::replace(&mut self.fixed, end.fixed), end.fixed];
         let piece = |from, to, other, joined, share, bent| Piece {
+            fixed,
             from,
             to,
             number: number as u32,
             other,
             joined,
+            corner: false,
             share,
             bent,
         };
@@ -129,6 +141,8 @@ impl AxesCourse {
             added.extend(ends.windows(2).enumerate().map(|(k, pair)| {
                 let [(t, a), (u, b)] = [pair[0], pair[1]];
                 let mut piece = piece(values(&a), values(&b), is_other, k > 0 || !is_other, [t, u], None);
+                piece.corner = k > 0;
+                piece.fixed = [&a, &b].map(|at| fixed_at(fixed, (from, to), at));
                 if !is_other {
                     // The path has its corners, too.
                     (piece.number, piece.share) = ((number + k) as u32, [0.0, 1.0]);
@@ -137,6 +151,47 @@ impl AxesCourse {
             }));
         }
         self.pieces.extend(added);
+    }
+
+    /// Where the joints are in a move of the path, at a time from 0 to 1.
+    #[must_use]
+    pub fn during(&self, number: usize, time: f64) -> Values {
+        let first = self.pieces.partition_point(|piece| (piece.number as usize) < number);
+        let own = self.pieces[first..].iter().enumerate();
+        let own = own.take_while(|(_, piece)| piece.number as usize == number);
+        let mut own = own.filter(|(_, piece)| !piece.other && piece.share[1] > piece.share[0]);
+        match own.find(|(_, piece)| time <= piece.share[1]) {
+            Some((piece, Piece { share: [from, to], .. })) => self.at(first + piece, (time - from) / (to - from)),
+            None => self.at(self.pieces.len() - 1, 1.0),
+        }
+    }
+
+    /// Whether the tool goes the same way on the part in a piece, wherever the part is: no axis is at a place of the machine, and none turns without tip
+    /// control.
+    #[must_use]
+    pub fn follows_part(&self, piece: usize) -> bool {
+        let piece = &self.pieces[piece];
+        let turns = self.chain.letters().iter().zip(piece.from).zip(piece.to);
+        let turns = turns
+            .into_iter()
+            .any(|((letter, from), to)| ('A'..='C').contains(letter) && from != to);
+        let is_fixed = piece.fixed.iter().flatten().any(|fixed| *fixed);
+        !is_fixed && (piece.bent.is_some() || !turns)
+    }
+
+    /// The limits of an axis.
+    #[must_use]
+    pub fn limits(&self, letter: char) -> Option<[f64; 2]> {
+        let linear = self.machine.linear().iter().find(|axis| axis.letter == letter);
+        let rotary = || self.machine.rotary().find(|axis| axis.letter == letter);
+        linear.map_or_else(|| rotary()?.limits, |axis| axis.limits)
+    }
+
+    /// Whether X, Y or Z is where the machine's own coordinates say, wherever the part is: at the start of a piece, and at its end.
+    #[must_use]
+    pub fn fixed(&self, piece: usize, letter: char) -> [bool; 2] {
+        let k = ['X', 'Y', 'Z'].iter().position(|own| *own == letter);
+        self.pieces[piece].fixed.map(|fixed| k.is_some_and(|k| fixed[k]))
     }
 
     /// The move of the path that a piece is of, the time in it, and whether it is so only if a rapid is a dog-leg.
@@ -148,6 +203,12 @@ impl AxesCourse {
     }
 }
 
+/// Which of X, Y and Z are fixed at a corner of a dog-leg between two positions: those that are where they are so.
+pub(super) fn fixed_at(fixed: [[bool; 3]; 2], (from, to): (&Position, &Position), at: &Position) -> [bool; 3] {
+    let is_there = |k: usize, end: &Position| at.xyz[k] == end.xyz[k];
+    std::array::from_fn(|k| fixed[0][k] && is_there(k, from) || fixed[1][k] && is_there(k, to))
+}
+
 impl Bent {
     fn new(
         machine: &Kinematics,
@@ -155,12 +216,24 @@ impl Bent {
         (end, to): (&ProgramPose, &Position),
         arc: Option<TipArc>,
     ) -> Self {
-        let tool_length = machine.tool_length(end.tool);
-        let tips = [start.tip(), end.pose.tip()];
-        let mut bound = machine.bend(tips, from.abc, to.abc, tool_length);
-        if let Some(arc) = arc {
+        let bent = Self {
+            tips: [start.tip(), end.pose.tip()],
+            arc,
+            from: *from,
+            to: *to,
+            tool_length: machine.tool_length(end.tool),
+            bound: [0.0; 3],
+        };
+        bent.on(machine)
+    }
+
+    /// The same way of the tip on a machine.
+    pub fn on(&self, machine: &Kinematics) -> Self {
+        let (from, to) = (&self.from, &self.to);
+        let mut bound = machine.bend(self.tips, from.abc, to.abc, self.tool_length);
+        if let Some(arc) = self.arc {
             let normal = Vector3::from(arc.normal());
-            let out = Vector3::from(tips[0]) - Vector3::from(arc.centre());
+            let out = Vector3::from(self.tips[0]) - Vector3::from(arc.centre());
             let radius = normal.cross(&out).norm();
             // What an arc adds to a straight tip: it is off by a diameter at most, faster by the arc, and bent itself.
             let turn: f64 = (0..3).map(|k| (to.abc[k] - from.abc[k]).abs().to_radians()).sum();
@@ -169,14 +242,7 @@ impl Bent {
             let [_, inverse] = machine.directions();
             bound = std::array::from_fn(|k| bound[k] + more * inverse.row(k).norm());
         }
-        Self {
-            tips,
-            arc,
-            from: *from,
-            to: *to,
-            tool_length,
-            bound,
-        }
+        Self { bound, ..self.clone() }
     }
 
     fn at(&self, machine: &Kinematics, time: f64) -> Position {

@@ -3,6 +3,7 @@
 mod check;
 mod course;
 mod excursions;
+mod moved;
 
 pub use check::{AxisFault, AxisFinding, check};
 pub use course::AxesCourse;

@@ -43,6 +43,7 @@ impl Track {
 
     /// The start of a feed move, if the path does not lead there.
     pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
+        self.set_out()?;
         if !rapid {
             self.cut_here();
         }
@@ -106,7 +107,7 @@ impl Track {
             kept,
         });
         self.xyz = [None; 3];
-        self.joined = false;
+        (self.joined, self.places.stands) = (false, false);
     }
 
     /// Where the tool is in the frame of the moves, as far as that is known.

@@ -92,6 +92,7 @@ impl Reader {
         self.refuse_compensation("a tool change")?;
         let Some(tool) = tool else { return Ok(()) };
         if Some(tool) == self.track.tool && !self.tools.changed {
+            self.track.go_to_change()?;
             self.track.event(EventKind::ToolChange(tool))?;
         }
         self.tools.changed = true;

@@ -30,6 +30,14 @@ impl Reader {
             return Err(NcProblem::syntax("G53 with an arc or a cycle: expected G0 or G1"));
         }
         let words = self.lengths(block, ['X', 'Y', 'Z']);
+        let [x, y, z] = words;
+        let [a, b, c] = ['A', 'B', 'C'].map(|letter| block.get(letter));
+        if self
+            .track
+            .go_to_machine([x, y, z, a, b, c], motion == MotionMode::Rapid)?
+        {
+            return Ok(());
+        }
         if self.offsets.knows_machine()
             && let [x, y, z] = self.control_position()
             && let [Some(x), Some(y), Some(z)] = [words[0].or(x), words[1].or(y), words[2].or(z)]
@@ -145,6 +153,7 @@ impl Reader {
             return Ok(());
         };
         let end = [x, y, z];
+        self.track.places.named = Some(words.map(|word| word.is_some()));
         if !matches!(motion, MotionMode::Curve { .. }) {
             self.modes.curve_tangent = None;
         }
