@@ -293,3 +293,42 @@ fn the_page_on_continuous_integration_is_true() {
         assert!(page.contains(&format!("`{rule}`")), "{rule}");
     }
 }
+
+/// Programs share the folder of a cache, and none is judged twice.
+#[test]
+fn what_was_judged_before_is_not_judged_again() {
+    let folder = workdir();
+    let run = |more: &[&str]| {
+        let programs = ["verify", "nc/good.nc", "nc/bad.nc", "nc/broken.nc"];
+        let output = folder.run(&[&programs, &COMMON[..], more].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+        let said = text(&output.stdout);
+        let lines = said
+            .lines()
+            .map(str::trim_start)
+            .filter(|line| line.starts_with("cache"));
+        let lines = lines.map(|line| line.split(" (").next().unwrap().to_owned());
+        (
+            lines.collect::<Vec<String>>(),
+            fs::read(folder.path("found.sarif")).unwrap(),
+        )
+    };
+    let (said, expected) = run(&[]);
+    assert_eq!(said, [""; 0]);
+    let cache = ["--cache", "known"];
+    let again =
+        |good: u8, bad: u8| [(good, 4), (bad, 6)].map(|(own, all)| format!("cache  {own} of {all} moves judged again"));
+    assert_eq!(run(&cache), (again(4, 6).to_vec(), expected.clone()));
+    assert_eq!(run(&cache), (again(0, 0).to_vec(), expected.clone()));
+    // Another program, of which only the end is new.
+    let bad = fs::read_to_string(folder.path("nc/bad.nc")).unwrap();
+    fs::write(folder.path("nc/bad.nc"), bad.replace("M30", "G0 Z30\nM30")).unwrap();
+    let (said, found) = run(&cache);
+    assert_eq!(said[0], again(0, 0)[0]);
+    assert_eq!(found, expected);
+    assert_eq!(fs::read_dir(folder.path("known")).unwrap().count(), 2);
+    for other in [&["--first"][..], &["--shard", "0/2"]] {
+        let refused = folder.bad(&[&["verify", "nc/good.nc"], &COMMON[..6], &cache, other].concat());
+        assert!(refused.contains("cannot be used with"), "{refused}");
+    }
+}
