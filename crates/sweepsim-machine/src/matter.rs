@@ -1,8 +1,8 @@
 //! Whether a body meets matter that becomes less: the stock of a part while it is cut.
 //!
 //! Cells of space around the matter are divided as far as it takes: a cell that all of its matter has left before is
-//! done with, and so is one that the body stays away from. One that nothing has been taken of is a solid like any other.
-//! Where a cell is neither, a place that is in the body, and in matter for certain, is a contact.
+//! done with, and so is one that the body stays away from. One that nothing has been taken of is a solid like any
+//! other. Where a cell is neither, a place that is in the body, and in matter for certain, is a contact.
 
 use crate::course::{Course, Interval, Runs, begin};
 use crate::gap::Pair;
@@ -24,8 +24,8 @@ pub trait Matter: Sync {
     fn is_left(&self, point: [f64; 3], number: usize) -> bool;
 }
 
-/// Cells are not divided below this size, and for their sake no times in which nothing moves farther than half of it, in
-/// millimetres.
+/// Cells are not divided below this size, and for their sake no times in which nothing moves farther than half of it,
+/// in millimetres.
 const FINEST: f64 = 0.2;
 /// Once it is known that something stays open, so many distances are computed to find a contact nevertheless.
 const AFTER: usize = 20_000;
@@ -85,8 +85,8 @@ struct Search<'a> {
     open: Option<(usize, f64)>,
 }
 
-/// Whether a body that is not on the part's link comes too near to matter between two corners of a box; or when it first
-/// does, to within 0.1 mm of its way.
+/// Whether a body that is not on the part's link comes too near to matter between two corners of a box; or when it
+/// first does, to within 0.1 mm of its way.
 #[must_use]
 pub fn meets(
     linkage: &Linkage,
@@ -302,7 +302,8 @@ impl<'a> Search<'a> {
             .most()
     }
 
-    /// Whether the middle of a spot is in the body, or too near to it, in the middle of a part of a move, and in matter.
+    /// Whether the middle of a spot is in the body, or too near to it, in the middle of a part of a move, and in
+    /// matter.
     fn is_contact(&mut self, interval: &Interval, frame: &Rigid, spot: &Spot) -> bool {
         let &Interval::Part { number, .. } = interval else {
             return false;

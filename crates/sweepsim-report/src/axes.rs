@@ -112,7 +112,8 @@ pub(crate) fn axes(html: &mut String, plots: &[AxisPlot], end: f64) {
 mod tests {
     use super::*;
 
-    /// A curve goes from where the axis is at the first column to where it is at the last; limits are lines above and below.
+    /// A curve goes from where the axis is at the first column to where it is at the last; limits are lines above and
+    /// below.
     #[test]
     fn curves_have_their_limits_and_marks() {
         let plot = AxisPlot {

@@ -83,7 +83,8 @@ pub struct Report {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<Vec<AxisTravel>>,
     /// A box of offsets of the part, in the machine's directions, for which nothing collides and no limit is met: the
-    /// least and the largest of X, Y and Z. If the program collides with the machine or meets a limit, and one was found.
+    /// least and the largest of X, Y and Z. If the program collides with the machine or meets a limit, and one was
+    /// found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_place: Option<[[f64; 3]; 2]>,
     /// What all tools do (`verify`).

@@ -7,7 +7,6 @@ mod contour_queue;
 mod cycles;
 mod driver;
 mod moves;
-mod places;
 mod rapids;
 mod said;
 mod trace;
@@ -26,7 +25,7 @@ pub(crate) use cycles::{
     ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,
 };
 pub(crate) use driver::{Coordinates, Sense};
-pub(crate) use places::LETTERS;
+pub(crate) use moves::LETTERS;
 pub(crate) use said::{DiameterAsked, UNKNOWN_TOOL};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;

@@ -7,9 +7,8 @@ use sweepsim_motion::{Move, Pose, TipCourse, Turning};
 
 use super::contour::{Contour, ProgramPlace, Recording};
 use super::driver::{Coordinates, Driver, Sense};
-use super::places::Places;
 use super::trace::Trace;
-use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut};
+use super::unknowns::{Cutters, Elsewhere, Frame, LeftOut, Places};
 use crate::machines::{Machine, Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;

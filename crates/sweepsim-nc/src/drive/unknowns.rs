@@ -140,3 +140,14 @@ impl Cutters {
         }
     }
 }
+
+/// What is known of places of the machine.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Places {
+    /// The tool is where the machine's own coordinates say, and no path begins there yet.
+    pub(in crate::drive) stands: bool,
+    /// X, Y and Z of the machine that its own coordinates gave last.
+    pub(in crate::drive) fixed: [Option<f64>; 3],
+    /// Which of X, Y and Z the next move names, where its reader says so.
+    pub named: Option<[bool; 3]>,
+}

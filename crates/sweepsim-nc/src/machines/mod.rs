@@ -17,7 +17,6 @@ mod kinematics;
 mod machine;
 mod places;
 mod ready;
-mod ready_bodies;
 mod rotaries;
 
 pub use bodies::{BodyDescription, BodyShape, Carries};

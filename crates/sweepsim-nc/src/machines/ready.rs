@@ -1,8 +1,10 @@
 //! Ready machines: the commonest kinds, without limits that only a maker knows.
 
+mod bodies;
+
 use super::description::{MachineDescription, RotaryAxis};
 use super::error::MachineError;
-use super::ready_bodies::with_bodies;
+use bodies::with_bodies;
 
 /// The names of the ready machines.
 pub(super) const NAMES: [&str; 13] = [
@@ -22,7 +24,7 @@ pub(super) const NAMES: [&str; 13] = [
 ];
 
 /// The one whose part is in a chuck, before a head that comes from its side.
-pub(super) const MILL_TURN: &str = "mill-turn";
+const MILL_TURN: &str = "mill-turn";
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -32,7 +34,7 @@ const NUTATING: [f64; 3] = [0.0, 1.0, 1.0];
 /// From the spindle's nose to the pivot of a head, in mm.
 const PIVOT: [f64; 3] = [0.0, 0.0, 150.0];
 
-/// The machine of a name, with [bodies](super::ready_bodies) if sizes follow it.
+/// The machine of a name, with [bodies](bodies) if sizes follow it.
 pub(super) fn named(text: &str) -> Option<Result<MachineDescription, MachineError>> {
     let (name, sizes) = match text.split_once(',') {
         Some((name, sizes)) => (name, Some(sizes)),

@@ -18,8 +18,8 @@ pub struct Remains<'a> {
 }
 
 impl Remains<'_> {
-    /// What is left of a stock that cutters cut along their paths, which are followed within a deviation; for as long as
-    /// `then` asks for it. `None` of an empty stock.
+    /// What is left of a stock that cutters cut along their paths, which are followed within a deviation; for as long
+    /// as `then` asks for it. `None` of an empty stock.
     ///
     /// # Errors
     /// The stock has too many vertices.

@@ -48,8 +48,12 @@ pub(in crate::verify) fn travel(session: Session) -> (Vec<AxisTravel>, Option<St
                 let values = course.at(piece, step as f64 / steps as f64);
                 for (letter, value) in course.chain().letters().iter().zip(values) {
                     let [from, to] = course.fixed(piece, *letter);
-                    // Homes may be at a limit.
-                    let is_fixed = if step == 0 { from } else { step == steps && to };
+                    // Homes may be at a limit, and the ways there end near it.
+                    let is_fixed = match step {
+                        0 => from,
+                        _ if step == steps => to,
+                        _ => from || to,
+                    };
                     reach(&mut axes, course, (*letter, value), is_fixed, place);
                 }
             }

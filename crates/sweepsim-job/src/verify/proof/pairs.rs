@@ -94,8 +94,8 @@ impl<'a> OnPath<'a> {
 
     /// What a way of looking at a pair finds, for a range of offsets.
     ///
-    /// Where the tool goes the same way on the part, an offset changes nothing between both. Elsewhere, at places of the machine above all, each axis is
-    /// off that way by no more than the offset moves it.
+    /// Where the tool goes the same way on the part, an offset changes nothing between both. Elsewhere, at places of
+    /// the machine above all, each axis is off that way by no more than the offset moves it.
     fn looked(&self, pair: usize, look: impl Fn(&Limits, &dyn Course, Option<&[usize]>) -> Outcome) -> Outcome {
         let (offset, none) = (self.range.offset, [0.0; 3]);
         if offset == none || !self.goes_along(pair) {

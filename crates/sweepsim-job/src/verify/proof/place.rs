@@ -66,8 +66,9 @@ pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, O
     Ok((found, Some(note)))
 }
 
-/// A box of offsets for which the program is proven to collide nowhere and to stay within the limits of all linear axes,
-/// with the range of lengths that is asked for. `None` if none was found, or a rotary axis is beyond its limits anyway.
+/// A box of offsets for which the program is proven to collide nowhere and to stay within the limits of all linear
+/// axes, with the range of lengths that is asked for. `None` if none was found, or a rotary axis is beyond its limits
+/// anyway.
 fn free(proof: &Proof, length: f64) -> Result<Option<Offsets>, JobError> {
     let found = with_remains(proof, |remains| Search::new(proof, length, Some(remains)).run())?;
     Ok(found.unwrap_or_else(|| Search::new(proof, length, None).run()))

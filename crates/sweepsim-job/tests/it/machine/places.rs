@@ -1,4 +1,5 @@
-//! Bodies at home, and on the ways that programs leave to the machine: to its homes, in its coordinates, to where tools are changed.
+//! Bodies at home, and on the ways that programs leave to the machine: to its homes, in its coordinates, to where
+//! tools are changed.
 
 use super::{Request, SIZES, run};
 use sweepsim_job::dexel::Stock;
@@ -109,7 +110,8 @@ fn bodies_that_overlap_at_home_are_refused_with_their_depth() {
     }
 }
 
-/// A post at X 200 that reaches 60 mm above the part's zero: the spindle goes around it, or through it, by ways that no block has as its own end.
+/// A post at X 200 that reaches 60 mm above the part's zero: the spindle goes around it, or through it, by ways that
+/// no block has as its own end.
 #[test]
 fn ways_between_paths_are_looked_at() {
     let post = [[180.0, -20.0, -500.0], [220.0, 20.0, -200.0]];

@@ -1,4 +1,7 @@
-//! Moves that are more than straight: arcs of the tip, and turns of the tool.
+//! Moves that are more than straight: arcs of the tip, turns of the tool, and ways to places of the machine.
 
 mod arcs;
+mod places;
 mod turns;
+
+pub(crate) use places::LETTERS;

@@ -16,17 +16,6 @@ pub(crate) type Goal = [Option<f64>; 6];
 
 pub(crate) const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
-/// What is known of places of the machine.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Places {
-    /// The tool is where the machine's own coordinates say, and no path begins there yet.
-    pub(super) stands: bool,
-    /// X, Y and Z of the machine that its own coordinates gave last.
-    fixed: [Option<f64>; 3],
-    /// Which of X, Y and Z the next move names, where its reader says so.
-    pub named: Option<[bool; 3]>,
-}
-
 impl Track {
     /// Has a tool in the spindle from now on.
     pub fn take_tool(&mut self, tool: Option<u32>) {
@@ -40,7 +29,7 @@ impl Track {
     }
 
     /// The position of the machine's axes at coordinates of its present kind.
-    pub(super) fn axes_of(&self, at: &Position) -> Option<Position> {
+    pub(in crate::drive) fn axes_of(&self, at: &Position) -> Option<Position> {
         match self.coordinates {
             Coordinates::Axes => Some(*at),
             Coordinates::Tip => Some(Position::new(self.driver.axes_at(at.xyz, at.abc)?, at.abc)),
@@ -48,7 +37,7 @@ impl Track {
     }
 
     /// The position of the axes, in machine coordinates of the spindle's nose.
-    pub(super) fn nose(&self) -> Option<Position> {
+    pub(in crate::drive) fn nose(&self) -> Option<Position> {
         let at = Position::new(self.frame.point(self.known()?), self.abc);
         let offset = self.driver.to_machine()?;
         let at = self.axes_of(&at)?;
@@ -56,13 +45,13 @@ impl Track {
     }
 
     /// Which of X, Y and Z are where the machine's own coordinates say.
-    pub(super) fn fixed_at(&self, at: &Position) -> [bool; 3] {
+    pub(in crate::drive) fn fixed_at(&self, at: &Position) -> [bool; 3] {
         let offset = self.driver.to_machine().unwrap_or_default();
         std::array::from_fn(|k| self.places.fixed[k].is_some_and(|fixed| (at.xyz[k] + offset[k] - fixed).abs() < SAME))
     }
 
     /// Takes the tool to be where the spindle's nose is at this place of the machine.
-    pub(super) fn stand(&mut self, nose: Position) {
+    pub(in crate::drive) fn stand(&mut self, nose: Position) {
         let Some(offset) = self.driver.to_machine() else {
             return;
         };
@@ -79,7 +68,7 @@ impl Track {
     }
 
     /// At the start, all axes are at home, if all linear ones have one.
-    pub(super) fn stand_at_home(&mut self) {
+    pub(in crate::drive) fn stand_at_home(&mut self) {
         let Some(machine) = self.driver.kinematics().filter(|_| self.known().is_none()) else {
             return;
         };
@@ -100,7 +89,7 @@ impl Track {
     }
 
     /// The path begins where the tool stands, if it does.
-    pub(super) fn set_out(&mut self) -> Result<(), NcProblem> {
+    pub(in crate::drive) fn set_out(&mut self) -> Result<(), NcProblem> {
         if let Some(xyz) = self.known().filter(|_| std::mem::take(&mut self.places.stands)) {
             self.joined = false;
             self.push(Position::new(self.frame.point(xyz), self.abc), Move::default(), true)?;
@@ -109,7 +98,7 @@ impl Track {
     }
 
     /// Before a move of the program to coordinates in its frame: the axes that it names, or else moves, leave the places of the machine.
-    pub(super) fn leave_places(&mut self, end: [f64; 3]) -> Result<(), NcProblem> {
+    pub(in crate::drive) fn leave_places(&mut self, end: [f64; 3]) -> Result<(), NcProblem> {
         let named = self.places.named.take();
         if self.places.fixed == [None; 3] {
             return Ok(());

@@ -4,10 +4,10 @@
 
 use std::collections::BTreeMap;
 
-use super::bodies::{BodyDescription, BodyShape, Carries};
-use super::description::{LinearAxis, MachineDescription};
-use super::error::MachineError;
-use super::ready::MILL_TURN;
+use super::MILL_TURN;
+use crate::machines::bodies::{BodyDescription, BodyShape, Carries};
+use crate::machines::description::{LinearAxis, MachineDescription};
+use crate::machines::error::MachineError;
 
 /// The sizes of a ready machine, in mm.
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +82,8 @@ pub(super) fn with_bodies(mut machine: MachineDescription, words: &str) -> Resul
     let zero = floor + sizes.zero;
     machine.part_zero = [0.0, 0.0, zero];
     machine.table.iter_mut().for_each(|axis| axis.pivot[2] += zero);
-    let letters = |axes: &[super::description::RotaryAxis]| axes.iter().map(|axis| axis.letter).collect::<String>();
+    let letters =
+        |axes: &[crate::machines::description::RotaryAxis]| axes.iter().map(|axis| axis.letter).collect::<String>();
     let (table, head) = (letters(&machine.table), letters(&machine.head));
     machine.tool_length = sizes.length;
     // A table that turns is heavy: the tool moves. Another one goes along X and Y.
