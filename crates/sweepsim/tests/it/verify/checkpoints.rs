@@ -9,10 +9,13 @@ use sweepsim::verify::{
 };
 use sweepsim_dexel::Dexels;
 
+/// What remains, and what was found.
+type State = (Vec<u8>, TileNotes);
+
 /// Keeps every state, and begins with one.
 #[derive(Default)]
 struct Kept {
-    states: Mutex<BTreeMap<(usize, usize), (Vec<u8>, TileNotes)>>,
+    states: Mutex<BTreeMap<(usize, usize), State>>,
     start: Option<(usize, Vec<TileState>)>,
 }
 
