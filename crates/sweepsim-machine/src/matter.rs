@@ -85,8 +85,8 @@ struct Search<'a> {
     open: Option<(usize, f64)>,
 }
 
-/// Whether a body that is not on the part's link comes too near to matter between two corners of a box; or when it
-/// first does, to within 0.1 mm of its way.
+/// Whether a body that is not on the part's link comes too near to matter between two corners of a box; or a time at
+/// which it does, the first one but for about a millimetre of its way.
 #[must_use]
 pub fn meets(
     linkage: &Linkage,
