@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::Stock;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
@@ -296,8 +296,10 @@ fn is_material(scene: &Scene, kind: u8, wide: f64, (number, time): (usize, f64),
 /// Random programs; so many of the statements should be broken, and so many proven.
 fn random_scenes(cases: u32, least: u32) {
     let counts = Cell::new([0_u32; 4]);
+    // The same scenes in each run: how many of a few are broken, proven or open is counted.
     let mut runner = TestRunner::new(Config {
         failure_persistence: None,
+        rng_seed: RngSeed::Fixed(0),
         ..Config::with_cases(cases)
     });
     let way = proptest::collection::vec([-9.0..9.0_f64, -5.0..5.0_f64], 2..4);
