@@ -57,7 +57,10 @@ fn change_logs() -> Result<Outcome, String> {
         Outcome::Holds
     } else {
         silent.sort();
-        Outcome::Fails(format!("nothing under Unreleased in CHANGELOG.md of {}", silent.join(", ")))
+        Outcome::Fails(format!(
+            "nothing under Unreleased in CHANGELOG.md of {}",
+            silent.join(", ")
+        ))
     })
 }
 
@@ -86,9 +89,14 @@ fn least_versions() -> Result<Outcome, String> {
     let mut update = cargo(&["update", "--quiet", "-Z", "direct-minimal-versions"], &clone);
     // An option that is not stable; it says what to write in `Cargo.toml` if two requirements cannot both be at their least.
     if !succeeds(update.env("RUSTC_BOOTSTRAP", "1"))? {
-        return Ok(Outcome::Fails("Cargo.toml asks for less than a dependency of ours does".into()));
+        return Ok(Outcome::Fails(
+            "Cargo.toml asks for less than a dependency of ours does".into(),
+        ));
     }
-    let mut check = cargo(&["check", "--quiet", "--workspace", "--all-features", "--lib", "--bins"], &clone);
+    let mut check = cargo(
+        &["check", "--quiet", "--workspace", "--all-features", "--lib", "--bins"],
+        &clone,
+    );
     check.env("CARGO_TARGET_DIR", target()?.join("least-target"));
     holds(&mut check, "the committed code does not compile with them")
 }
@@ -106,16 +114,26 @@ fn compatible() -> Result<Outcome, String> {
     if tag.is_empty() {
         return Ok(Outcome::Skipped("there is no tag of a release to compare with".into()));
     }
-    let mut check = cargo(&["semver-checks", "--workspace", "--baseline-rev", &tag], &workspace::root());
+    let mut check = cargo(
+        &["semver-checks", "--workspace", "--baseline-rev", &tag],
+        &workspace::root(),
+    );
     holds(&mut check, "see above")
 }
 
 fn examples() -> Result<Outcome, String> {
-    Ok(if standalone::run(&[])? { Outcome::Holds } else { Outcome::Fails("see above".into()) })
+    Ok(if standalone::run(&[])? {
+        Outcome::Holds
+    } else {
+        Outcome::Fails("see above".into())
+    })
 }
 
 fn publishable() -> Result<Outcome, String> {
-    let mut publish = cargo(&["publish", "--workspace", "--dry-run", "--locked", "--quiet"], &workspace::root());
+    let mut publish = cargo(
+        &["publish", "--workspace", "--dry-run", "--locked", "--quiet"],
+        &workspace::root(),
+    );
     holds(&mut publish, "see above")
 }
 
@@ -124,7 +142,11 @@ fn bill() -> Result<Outcome, String> {
 }
 
 fn holds(command: &mut Command, otherwise: &str) -> Result<Outcome, String> {
-    Ok(if succeeds(command)? { Outcome::Holds } else { Outcome::Fails(otherwise.into()) })
+    Ok(if succeeds(command)? {
+        Outcome::Holds
+    } else {
+        Outcome::Fails(otherwise.into())
+    })
 }
 
 fn succeeds(command: &mut Command) -> Result<bool, String> {
