@@ -5,6 +5,7 @@ mod bom;
 mod browser;
 mod cluster;
 mod generate;
+mod mutate;
 mod others;
 mod pictures;
 mod plot;
@@ -130,6 +131,15 @@ enum Command {
         #[arg(long)]
         as_built: bool,
     },
+    /// Tries readers on files that are almost right: they answer, without a panic and soon. Failures are kept under
+    /// fixtures/mutations/.
+    Mutate {
+        /// One of them [default: all].
+        reader: Option<String>,
+        /// How long, each.
+        #[arg(long, default_value_t = 1.0)]
+        minutes: f64,
+    },
     /// Checks what must hold of a release beyond the gate: takes many minutes.
     Release {
         /// Publishes nothing. Required: publishing itself is left to cargo.
@@ -240,6 +250,7 @@ fn main() -> ExitCode {
         Command::Cluster => cluster::run(),
         Command::Shards { plot, as_built } if cfg!(debug_assertions) && !plot && !as_built => in_release(),
         Command::Shards { plot, .. } => cluster::measure(plot),
+        Command::Mutate { reader, minutes } => mutate::run(reader.as_deref(), minutes),
         Command::Release { .. } => release::dry_run(),
         Command::Bom => bom::bom().map(|text| {
             print!("{text}");

@@ -213,7 +213,7 @@ fn pieces_of_verify_are_checked() {
         &[
             &["simulate", "job.ron", "--out", "p", "--shard", "1/3"][..],
             &SMALL,
-            &only,
+            &only[1..],
         ]
         .concat(),
     );
