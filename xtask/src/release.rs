@@ -74,7 +74,8 @@ fn unreleased(log: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Checked in a clone, since it renews `Cargo.lock`. That a dependency's own dependencies are at their least is not asked.
+/// Checked in a clone, since it renews `Cargo.lock`. That a dependency's own dependencies are at their least is not
+/// asked.
 fn least_versions() -> Result<Outcome, String> {
     let clone = target()?.join("least");
     if clone.exists() {
@@ -87,7 +88,8 @@ fn least_versions() -> Result<Outcome, String> {
         return Ok(Outcome::Skipped("this is no git repository".into()));
     }
     let mut update = cargo(&["update", "--quiet", "-Z", "direct-minimal-versions"], &clone);
-    // An option that is not stable; it says what to write in `Cargo.toml` if two requirements cannot both be at their least.
+    // An option that is not stable; it says what to write in `Cargo.toml` if two requirements cannot both be at their
+    // least.
     if !succeeds(update.env("RUSTC_BOOTSTRAP", "1"))? {
         return Ok(Outcome::Fails(
             "Cargo.toml asks for less than a dependency of ours does".into(),

@@ -86,7 +86,7 @@ struct Search<'a> {
 }
 
 /// Whether a body that is not on the part's link comes too near to matter between two corners of a box; or a time at
-/// which it does, the first one but for about a millimetre of its way.
+/// which it does: no later than the first sixteenth of a move at which both share a cube of 4 mm.
 #[must_use]
 pub fn meets(
     linkage: &Linkage,

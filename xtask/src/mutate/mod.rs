@@ -1,5 +1,5 @@
-//! `cargo xtask mutate`: readers on files that are almost right. Whatever is in a file, a reader answers, by a result or
-//! an error, without a panic and soon.
+//! `cargo xtask mutate`: readers on files that are almost right. Whatever is in a file, a reader answers, by a result
+//! or an error, without a panic and soon.
 //!
 //! Files that a reader failed on are kept in `fixtures/mutations/READER`, as small as they could be made, and tried
 //! first from then on.

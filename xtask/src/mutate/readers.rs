@@ -1,4 +1,5 @@
-//! The readers, and a file of each that is right. Certificates have their own test: a digest refuses whatever is changed.
+//! The readers, and a file of each that is right. Certificates have their own test: a digest refuses whatever is
+//! changed.
 
 use crate::workspace;
 use std::fmt::Display;

@@ -141,8 +141,8 @@ fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The first few free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution,
-/// and with poles over lines.
+/// The first few free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of
+/// revolution, and with poles over lines.
 fn free_form_is_cheap(tools: usize, methods: &[Method], list: &[Family], distances: &[f64]) {
     let mut wrong = Vec::new();
     let all = [

@@ -3,13 +3,13 @@
 mod bodies;
 mod crowd;
 mod excess;
+mod free_place;
 mod machine;
 mod pairs;
-mod place;
 mod process;
 mod registers;
 
-pub(super) use place::propose;
+pub(super) use free_place::propose;
 pub(super) use registers::compare as compare_registers;
 
 use super::asked::solids;
