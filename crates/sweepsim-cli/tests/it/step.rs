@@ -165,6 +165,31 @@ fn findings_of_verify_name_the_face() {
     assert!(page.contains("Deviations by face of the target") && page.contains("<td>slope</td>"));
 }
 
+/// Limits by face follow the names of the file, whatever a cache knows of the same triangles.
+#[test]
+fn a_cache_knows_the_names_of_faces() {
+    let workdir = Workdir::new(
+        "Job(
+    grid: Grid(min: (-1, -1), max: (11, 11), cells: (24, 24)),
+    stock: Block(min: (0, 0, 0), max: (10, 10, 10)),
+    tools: { 1: Flat(radius: 1, length: 20) },
+    paths: [Path(tool: 1, poses: [((3, 3, 12), (0, 0, 1)), ((3, 3, 3.5), (0, 0, 1))])],
+    target: Mesh(\"tip.step\"),
+    limits: Limits(gouge: 0.05, excess: 20, regions: [Region(face: \"slope\", gouge: 1, excess: 20)]),
+)",
+    );
+    for (face, status) in [("#53", 0), ("#50", 1), ("#53", 0)] {
+        let (plain, named) = (
+            format!("{face}=ADVANCED_FACE(''"),
+            format!("{face}=ADVANCED_FACE('slope'"),
+        );
+        fs::write(workdir.path("tip.step"), tetrahedron().replace(&plain, &named)).unwrap();
+        let options = ["--no-proof", "--only", "report", "--moments", "0", "--cache", "cache"];
+        let output = workdir.run_job("verify", &options);
+        assert_eq!(output.status.code(), Some(status), "{face}: {}", text(&output.stdout));
+    }
+}
+
 /// The corner of a cube of one centimetre.
 fn tetrahedron() -> String {
     let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];

@@ -55,14 +55,18 @@ impl<'a> Session<'a> {
         self.plan.cache.as_ref()
     }
 
-    /// Digests of the stock, and of the target with its limits, for those who ask the cache.
+    /// Digests of the stock, and of the target with its limits, and colours and faces that they may hold for: for those
+    /// who ask the cache.
     pub fn digests(&self) -> (Key, Key) {
         let job = self.job;
         let stock = || Digest::of("stock").stock(&job.stock).key();
         let target = || {
             let own = Digest::of("target").value(&job.limits).floats(&[job.tolerance]);
             match &job.target {
-                Some(target) => own.number(1).triangles(&target.mesh).value(&target.colours),
+                Some(target) => {
+                    let own = own.number(1).triangles(&target.mesh);
+                    own.value(&target.colours).value(&target.faces)
+                }
                 None => own.number(0),
             }
             .key()
