@@ -1,5 +1,5 @@
 use super::*;
-use crate::grid::Grid;
+use crate::grid::{Frame, Grid};
 use crate::mesh::{MeshError, TriangleSoup};
 use crate::stock::Stock;
 use proptest::prelude::*;
@@ -304,5 +304,51 @@ fn each_vertex_knows_its_cut() {
     }
     for segment in [0, 1] {
         assert!(sources.contains(&source(segment)));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    /// The nearest end of all sets, wherever a place is: near an end of one set, of another one, or of none.
+    #[test]
+    fn sources_are_those_of_the_nearest_ends(
+        spans in prop::collection::vec(prop::collection::vec((0.0..6.0_f64, 0.1..4.0_f64, any::<bool>()), 36), 3),
+        places in prop::collection::vec(prop::array::uniform3(-3.0..9.0_f64), 40),
+    ) {
+        let set = |axis: usize| {
+            let grid = Grid::new([0.0; 2], [6.0; 2], [6; 2]).unwrap().in_frame(Frame::cyclic(axis));
+            Dexels::from_fn(grid, |index, line| {
+                let (from, length, is_cut) = spans[axis][index];
+                let mut interval = Interval::between(from, from + length);
+                for (end, number) in [(&mut interval.lower, 0), (&mut interval.upper, 1)] {
+                    if is_cut {
+                        end.source = Source::Cut { path: axis as u32, segment: 2 * index as u32 + number, t: 0.0 };
+                    }
+                }
+                // A few lines have material.
+                line.extend((index % 5 == 0).then_some(interval));
+            })
+            .unwrap()
+        };
+        let sets = [set(0), set(1), set(2)];
+        let mut ends: Vec<([f64; 3], Source)> = Vec::new();
+        for set in &sets {
+            let grid = set.grid();
+            for (index, intervals) in set.iter() {
+                let (i, j) = grid.place(index);
+                let own = intervals.iter().flat_map(|interval| [interval.lower, interval.upper]);
+                let cut = own.filter(|end| end.source.is_cut());
+                ends.extend(cut.map(|end| (grid.frame().to_world([grid.x(i), grid.y(j), end.z]), end.source)));
+            }
+        }
+        let mesh = Mesh { cut: vec![true; places.len()], vertices: places, ..Mesh::default() };
+        let far = |end: &([f64; 3], Source), p: &[f64; 3]| (0..3).map(|k| (end.0[k] - p[k]).powi(2)).sum::<f64>().sqrt();
+        for (place, found) in mesh.vertices.iter().zip(sources_in(&sets.each_ref(), &mesh)) {
+            let least = ends.iter().map(|end| far(end, place)).fold(f64::INFINITY, f64::min);
+            match ends.iter().find(|end| end.1 == found) {
+                Some(end) => prop_assert!(far(end, place) <= least + 1e-9, "{place:?}"),
+                None => prop_assert!(found == Source::Stock && ends.is_empty(), "{place:?}"),
+            }
+        }
     }
 }
