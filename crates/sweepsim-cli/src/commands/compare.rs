@@ -115,7 +115,7 @@ fn aligned(line: &mut impl FnMut(&str, &str), alignment: &ReportedAlignment) {
     line(
         "aligned",
         &format!(
-            "{how}: turned by {}° and {moved} by {}; left are {} mm (RMS, largest {}) at {} points",
+            "{how}: turned by {}° and {moved} by {}; then it is off by {} mm (RMS), at most by {} mm, at {} points",
             length(alignment.angle),
             words::point(alignment.translation),
             length(alignment.rms),

@@ -32,12 +32,11 @@ pub(super) fn describe(
         findings.extend(new);
         report.statements = Some(statements.clone());
     }
-    if session.request.judging.place
-        && !done.stopped
+    let is_placed_well = job.paths.iter().any(|path| path.on_machine.is_some())
         && findings
             .iter()
-            .any(|own| ["machine", "limit"].contains(&own.kind.as_str()))
-    {
+            .all(|own| !["machine", "limit"].contains(&own.kind.as_str()));
+    if session.request.judging.place && !done.stopped && !is_placed_well {
         let (place, note) = phase(report, "place", || proof::propose(session))?;
         report.free_place = place;
         report.notes.extend(note);

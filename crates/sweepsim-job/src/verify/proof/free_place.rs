@@ -37,7 +37,8 @@ pub(in crate::verify) type Offsets = [[f64; 3]; 2];
 /// Another place for the part, if there is a free one, and what is said of it.
 pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, Option<String>), JobError> {
     if session.job.paths.iter().all(|path| path.on_machine.is_none()) {
-        return Ok((None, None));
+        let note = "no other place of the part is looked for: there is no machine that it could be on";
+        return Ok((None, Some(note.to_owned())));
     }
     session.phase("place");
     let proof = Proof {

@@ -1,10 +1,17 @@
 //! A place for the part that is free, proposed where its own is not.
 
-use super::Request;
 use super::places::{met, state, written};
-use sweepsim_job::dexel::Stock;
-use sweepsim_job::motion::Tool;
+use super::{judged, request};
 use sweepsim_job::{Judging, Outcome, ProgramOptions, StatementState};
+
+const BLOCK: [[f64; 3]; 2] = [[-50.0; 3], [50.0, 50.0, 0.0]];
+
+/// Another place is to be looked for.
+fn placed() -> Judging {
+    let mut judging = Judging::default();
+    judging.place = true;
+    judging
+}
 
 /// A mill with a post on its bed at X 200 … 240, and X from -250 to 250.
 fn run(offset: [f64; 3], program: &str) -> Outcome {
@@ -18,23 +25,7 @@ fn run(offset: [f64; 3], program: &str) -> Outcome {
         (letter: 'Z', limits: (-450, 0), home: 0)], tool_change: [{{'Z': 0}}])"#,
         z - 400.0
     );
-    let mut options = ProgramOptions::default();
-    options.dialect.machine = Some(written(&machine));
-    let mut judging = Judging::default();
-    judging.place = true;
-    Request::from_program("place.nc", program)
-        .judging(judging)
-        .program(options)
-        .tool(1, Tool::flat(5.0, 30.0).unwrap())
-        .stock(Stock::Block {
-            min: [-50.0, -50.0, -50.0],
-            max: [50.0, 50.0, 0.0],
-        })
-        .cells([10, 10])
-        .plan()
-        .unwrap()
-        .run(&())
-        .unwrap()
+    judged(&written(&machine), program, BLOCK, placed())
 }
 
 fn is_free(outcome: &Outcome) -> bool {
@@ -118,5 +109,17 @@ fn no_place_is_proposed_where_there_is_none() {
             .notes
             .iter()
             .any(|note| note.starts_with("no other place of the part was found"))
+    );
+}
+
+#[test]
+fn no_place_is_looked_for_without_a_machine() {
+    let program = "G21 G90\nT1 M6\nS900 M3\nG0 X0 Y0 Z60\nG1 Z5 F300\nM30\n";
+    let request = request("3-axis", program, BLOCK, placed()).program(ProgramOptions::default());
+    let outcome = request.plan().unwrap().run(&()).unwrap();
+    let notes = &outcome.report().notes;
+    assert!(
+        notes.iter().any(|note| note.contains("there is no machine")),
+        "{notes:?}"
     );
 }
