@@ -19,11 +19,12 @@
 mod batch;
 mod edge;
 mod outline;
+mod sources;
 mod square;
 mod steps;
 mod wall;
 
-use crate::dexels::{Dexels, NearestEnd};
+use crate::dexels::Dexels;
 use crate::intervals::{End, Interval, Source};
 use crate::mesh::{MOST_VERTICES, Mesh, MeshError, check_vertices};
 use crate::vector::{dot, normal_of};
@@ -31,6 +32,7 @@ use batch::TriangleBatch;
 use edge::{Class, Edge};
 use outline::Outline;
 use rayon::prelude::*;
+pub(crate) use sources::sources_in;
 use square::Square;
 use std::collections::HashMap;
 pub(crate) use steps::{Step, steps};
@@ -86,29 +88,6 @@ impl Dexels {
     pub fn sources(&self, mesh: &Mesh) -> Vec<Source> {
         sources_in(&[self], mesh)
     }
-}
-
-/// For each vertex, the source of the nearest end that a tool made, in any of the sets.
-pub(crate) fn sources_in(sets: &[&Dexels], mesh: &Mesh) -> Vec<Source> {
-    // Where a set has no end near a place, all of it would be searched: each looks no farther than the one before found one.
-    let nearest = |place: [f64; 3], reach: f64| {
-        sets.iter().fold(None, |best: Option<NearestEnd>, set| {
-            let reach = best.as_ref().map_or(reach, |best| best.distance);
-            let own = set.nearest_of(place, reach, |end| end.source.is_cut());
-            own.filter(|own| best.is_none() || own.distance < reach).or(best)
-        })
-    };
-    // A surface is seldom farther from its ends than cells are wide.
-    let diagonals = sets.iter().map(|set| set.grid().spacing()).map(|[u, v]| u.hypot(v));
-    let wide = diagonals.fold(0.0, f64::max);
-    let source = |(number, place): (usize, &[f64; 3])| {
-        let cut = mesh.cut.get(number).copied().unwrap_or(false);
-        let near = || nearest(*place, wide).or_else(|| nearest(*place, f64::INFINITY));
-        cut.then(near)
-            .flatten()
-            .map_or(Source::Stock, |nearest| nearest.end.source)
-    };
-    mesh.vertices.par_iter().enumerate().map(source).collect()
 }
 
 /// The surface, if it needs at most this many vertices.
