@@ -43,7 +43,7 @@ pub use mesh::{
     AnalyticSurface, ClusteredMesh, DistanceTo, FaceSurfaces, Mesh, MeshError, Nearest, NearestTriangle, TriangleSoup,
 };
 pub use stock::{Stock, StockError};
-pub use tri::{TriDexels, TriDexelsError};
+pub use tri::{SurfaceEnd, SurfaceEnds, TriDexels, TriDexelsError};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -18,6 +18,7 @@
 //! on its curve. (Others flip the curves of such a face; this way a cell does not depend on its neighbours.)
 
 use super::TriDexels;
+use super::ends::SurfaceEnds;
 use super::cell::{CELLS, EDGES};
 use super::lattice::{Hit, Lattice};
 use super::plane::Planes;
@@ -30,13 +31,37 @@ pub(crate) fn disagreements(solid: &TriDexels) -> usize {
 }
 
 pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
+    faces_of(&Lattice::new(solid), most, false).map(|(mesh, _)| mesh)
+}
+
+/// The same, with the interval end that each triangle was made for.
+pub(crate) fn contour_with_ends(solid: &TriDexels, most: usize) -> Result<(Mesh, SurfaceEnds), MeshError> {
     let lattice = Lattice::new(solid);
+    let (mesh, made) = faces_of(&lattice, most, true)?;
+    let mut ends = SurfaceEnds::default();
+    // Triangles of an end follow one another.
+    let mut last = None;
+    for (axis, at) in made {
+        if last != Some((axis, at)) {
+            last = Some((axis, at));
+            ends.ends.push(lattice.surface_end(axis, at));
+        }
+        ends.of_triangle.push(ends.ends.len() as u32 - 1);
+    }
+    Ok((mesh, ends))
+}
+
+/// An edge of the lattice: its axis, and where it begins.
+type LatticeEdge = (usize, [usize; 3]);
+
+/// The mesh, and if that is asked for, the edge of the lattice that each triangle is around.
+fn faces_of(lattice: &Lattice, most: usize, tell: bool) -> Result<(Mesh, Vec<LatticeEdge>), MeshError> {
     let hits = [0, 1, 2].map(|axis| lattice.hits(axis));
-    let find = |axis: usize, at: [usize; 3]| hits[axis].find(&lattice, at);
+    let find = |axis: usize, at: [usize; 3]| hits[axis].find(lattice, at);
     // Vertices, slab after slab of cells.
     let mut slabs: Vec<Slab> = (0..lattice.points[0] - 1)
         .into_par_iter()
-        .map(|i| Slab::new(&lattice, i, &find))
+        .map(|i| Slab::new(lattice, i, &find))
         .collect();
     check_vertices(slabs.iter().map(|slab| slab.vertices.len()).sum(), most)?;
     let mut mesh = Mesh::default();
@@ -57,34 +82,41 @@ pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError>
         .flat_map(|axis| (0..lattice.points[(axis + 1) % 3]).map(move |number| (axis, number)))
         .collect();
     type Rest<'a> = Vec<(Ring, Face<'a>)>;
-    let faces: Vec<(Vec<[u32; 3]>, Rest<'_>)> = slabs
+    type Slabs<'a> = (Vec<[u32; 3]>, Vec<LatticeEdge>, Rest<'a>);
+    let faces: Vec<Slabs<'_>> = slabs
         .into_par_iter()
         .map(|(axis, number)| {
-            let (mut triangles, mut rest) = (Vec::new(), Vec::new());
-            for (at, hit) in hits[axis].slab(&lattice, number) {
+            let (mut triangles, mut made, mut rest) = (Vec::new(), Vec::new(), Vec::new());
+            for (at, hit) in hits[axis].slab(lattice, number) {
                 let face = Face { axis, at, hit };
-                let ring = face.ring(&lattice, &vertex);
+                let ring = face.ring(lattice, &vertex);
                 if ring.keys.iter().all(Option::is_none) {
-                    triangles.extend(face.halves(&lattice, &mesh, ring.corners));
+                    triangles.extend(face.halves(lattice, &mesh, ring.corners));
+                    made.extend(std::iter::repeat_n((axis, at), if tell { 2 } else { 0 }));
                 } else {
                     rest.push((ring, face));
                 }
             }
-            (triangles, rest)
+            (triangles, made, rest)
         })
         .collect();
     let mut extra = Extra::default();
-    let mut fans = Vec::new();
-    for (triangles, rest) in faces {
+    let (mut fans, mut around) = (Vec::new(), Vec::new());
+    let mut edges = Vec::new();
+    for (triangles, made, rest) in faces {
         mesh.triangles.extend(triangles);
+        edges.extend(made);
         for (ring, face) in rest {
-            fans.extend(face.fan(&lattice, &mesh, ring, &mut extra));
+            let fan = face.fan(lattice, &mesh, ring, &mut extra);
+            around.extend(std::iter::repeat_n((face.axis, face.at), if tell { fan.len() } else { 0 }));
+            fans.extend(fan);
         }
     }
     mesh.triangles.extend(fans);
+    edges.extend(around);
     check_vertices(mesh.vertices.len() + extra.planes.len(), most)?;
     extra.finish(&mut mesh);
-    Ok(mesh)
+    Ok((mesh, edges))
 }
 
 /// The vertices of the cells with a given first number.

@@ -1,7 +1,9 @@
 //! Which points of the lattice are in material, and where the material ends between them.
 
 use super::TriDexels;
-use crate::dexels::Dexels;
+use super::ends::SurfaceEnd;
+use crate::dexels::{Dexels, Line};
+use crate::intervals::{End, Source};
 use rayon::prelude::*;
 
 /// Points where lines of all three sets cross, with a rim of points without material around them.
@@ -166,18 +168,9 @@ impl<'a> Lattice<'a> {
             }
             before = inside;
             let (low, high) = (self.coordinate(axis, n - 1), self.coordinate(axis, n));
-            let slack = SLACK * self.step[axis];
-            let near = |z: f64| low - slack <= z && z <= high + slack;
-            let end = if inside {
-                // The last lower end, or the first upper end: the one nearest to the point with material.
-                intervals.iter().map(|i| i.lower).rfind(|end| near(end.z))
-            } else {
-                intervals.iter().map(|i| i.upper).find(|end| near(end.z))
-            };
-            // Cut off at the box.
             let face = 0.5 * (low + high);
             let (bottom, top) = (n == 1, n == self.points[axis] - 1);
-            let end = end.filter(|end| !(bottom && end.z < face || top && end.z > face));
+            let end = self.end(&intervals, axis, n, inside);
             hits.push(Hit {
                 edge: (n - 1) as u32,
                 upper: !inside,
@@ -197,6 +190,42 @@ impl<'a> Lattice<'a> {
                 },
                 cut: end.is_some_and(|end| end.source.is_cut()),
             });
+        }
+    }
+
+    /// The end of an interval on the edge before point `n` of a line; none where the sets disagree, or the material is
+    /// cut off at the box.
+    fn end(&self, intervals: &Line<'_>, axis: usize, n: usize, inside: bool) -> Option<End> {
+        let (low, high) = (self.coordinate(axis, n - 1), self.coordinate(axis, n));
+        let slack = SLACK * self.step[axis];
+        let near = |z: f64| low - slack <= z && z <= high + slack;
+        let end = if inside {
+            // The last lower end, or the first upper end: the one nearest to the point with material.
+            intervals.iter().map(|i| i.lower).rfind(|end| near(end.z))
+        } else {
+            intervals.iter().map(|i| i.upper).find(|end| near(end.z))
+        };
+        let face = 0.5 * (low + high);
+        let (bottom, top) = (n == 1, n == self.points[axis] - 1);
+        end.filter(|end| !(bottom && end.z < face || top && end.z > face))
+    }
+
+    /// The end of an interval on the edge along `axis` that begins at a point, whose two points differ.
+    pub fn surface_end(&self, axis: usize, at: [usize; 3]) -> SurfaceEnd {
+        let mut hits = Vec::new();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        self.line(axis, at[u], at[v], &mut hits);
+        let found = hits.iter().find(|hit| hit.edge as usize == at[axis]);
+        let source = found.and_then(|hit| {
+            let intervals = self.sets[axis].intervals(at[u] - 1, at[v] - 1);
+            self.end(&intervals, axis, at[axis] + 1, !hit.upper)
+        });
+        let ends = [0, self.points[axis] - 2];
+        SurfaceEnd {
+            place: found.map_or([f64::NAN; 3], |hit| self.place(axis, at, hit)),
+            normal: found.and_then(|hit| hit.normal).map(|normal| normal.map(f64::from)),
+            source: source.map_or(Source::Stock, |end| end.source),
+            at_box: source.is_none() && ends.contains(&at[axis]),
         }
     }
 

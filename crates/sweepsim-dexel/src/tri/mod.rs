@@ -2,6 +2,7 @@
 
 mod cell;
 mod contour;
+mod ends;
 mod lattice;
 mod plane;
 
@@ -12,6 +13,7 @@ use crate::intervals::Source;
 use crate::mesh::{MOST_VERTICES, Mesh, MeshError};
 use crate::stock::{Stock, StockError};
 use crate::surface::sources_in;
+pub use ends::{SurfaceEnd, SurfaceEnds};
 use thiserror::Error;
 
 /// Three sets of dexels, along `x`, `y` and `z`, whose lines meet at the centres of `cells[0] × cells[1] × cells[2]`
@@ -183,6 +185,25 @@ impl TriDexels {
     /// [`MeshError::TooManyVertices`]
     pub fn surface(&self) -> Result<Mesh, MeshError> {
         contour::contour(self, MOST_VERTICES)
+    }
+
+    /// The [surface](Self::surface), and the interval end that each of its triangles was made for: a triangle is no
+    /// farther than about a cell from its end, and where the end has a smooth surface, it approximates that one.
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Stock, TriDexels};
+    /// let ball = Stock::Ball { centre: [0.0; 3], radius: 4.0 };
+    /// let solid = TriDexels::new([-5.0; 3], [5.0; 3], [20; 3], &ball)?;
+    /// let (mesh, ends) = solid.surface_with_ends()?;
+    /// assert_eq!(ends.of_triangle.len(), mesh.triangles.len());
+    /// assert!(ends.ends.iter().all(|end| (end.place.map(|c| c * c).iter().sum::<f64>() - 16.0).abs() < 1e-9));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn surface_with_ends(&self) -> Result<(Mesh, SurfaceEnds), MeshError> {
+        contour::contour_with_ends(self, MOST_VERTICES)
     }
 
     /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the

@@ -1,0 +1,234 @@
+//! Vertices and edges in space.
+
+use super::chains::{Chain, Chains};
+use super::curve::{Curve, Edge};
+use super::trace::Course;
+use crate::label::{FREE, Groups, Labels};
+use crate::net::Net;
+use crate::solid::SolidOptions;
+use crate::solve::{Condition, meet, sine};
+use crate::surface::Surface;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// Vertices of a chain that are looked at.
+const GUIDES: usize = 24;
+/// How far points may be moved onto surfaces, in cells.
+const FAR: f64 = 2.0;
+/// Surfaces at larger angles than this, as a sine, do not touch within a cell.
+const STEEP: f64 = 0.5;
+
+/// Where chains and their corners are.
+pub(crate) struct Placed {
+    /// Of each chain its edge; none if its ends fell together.
+    pub edges: Vec<Option<Edge>>,
+    /// The vertices of the solid, by their place in [`Edge::vertices`].
+    pub vertices: Vec<Vector3<f64>>,
+    /// Vertices of the mesh where no point was found, or chains for which no edge was.
+    pub failed: Vec<u32>,
+}
+
+/// What a chain runs along.
+#[derive(Clone, Copy)]
+pub(crate) enum Between<'a> {
+    /// A face without a surface is on one side.
+    Free,
+    /// Two surfaces, and whether they touch.
+    Surfaces([&'a Surface; 2], bool),
+}
+
+/// Finds the vertices and edges of the solid.
+pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains, scale: &SolidOptions) -> Placed {
+    let between: Vec<Between> = chains
+        .all
+        .iter()
+        .map(|chain| between(net, groups, labels, chain, scale))
+        .collect();
+    let (nodes, mut failed) = nodes(net, groups, labels, chains, &between, scale);
+    let mut numbers: BTreeMap<u32, u32> = nodes.keys().enumerate().map(|(k, v)| (*v, k as u32)).collect();
+    let mut vertices: Vec<Vector3<f64>> = nodes.values().copied().collect();
+    collapse(net, chains, &mut numbers, &mut vertices, scale);
+    let mut edges = Vec::with_capacity(chains.all.len());
+    for (chain, between) in chains.all.iter().zip(&between) {
+        let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]];
+        let own = ends.map(|vertex| numbers[&vertex]);
+        if own[0] == own[1] && extent(net, chain) < FAR * scale.cell {
+            edges.push(None);
+            continue;
+        }
+        let ends = own.map(|vertex| vertices[vertex as usize]);
+        let edge = match between {
+            Between::Free => Some(Edge {
+                vertices: own,
+                ends,
+                curve: Curve::Line,
+            }),
+            Between::Surfaces(surfaces, touch) => course(net, chain, *surfaces, *touch, own, ends, scale).edge(),
+        };
+        if edge.is_none() {
+            failed.extend(&chain.vertices);
+        }
+        edges.push(edge);
+    }
+    Placed {
+        edges,
+        vertices,
+        failed,
+    }
+}
+
+/// How far a chain reaches from its start.
+fn extent(net: &Net, chain: &Chain) -> f64 {
+    let start = net.place(chain.vertices[0]);
+    chain.vertices.iter().map(|v| (net.place(*v) - start).norm()).fold(0.0, f64::max)
+}
+
+/// A few vertices of a chain, without its ends unless it has no others.
+fn some(chain: &Chain, count: usize) -> Vec<u32> {
+    let inner = &chain.vertices[1..chain.vertices.len() - 1];
+    let from = if inner.is_empty() { &chain.vertices[..] } else { inner };
+    let step = from.len().div_ceil(count).max(1);
+    from.iter().step_by(step).copied().collect()
+}
+
+fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, scale: &SolidOptions) -> Between<'a> {
+    let [a, b] = chain.faces.map(|face| groups.label[face as usize]);
+    if a == FREE || b == FREE {
+        return Between::Free;
+    }
+    let surface = |label: u32| &labels.all[label as usize].surface;
+    if let Some(plane) = labels.divider(a, b) {
+        return Between::Surfaces([surface(a), plane], false);
+    }
+    let pair = [surface(a), surface(b)];
+    let looked_at = some(chain, 9);
+    let touching = looked_at.iter().filter(|vertex| touches(net.place(**vertex), pair, scale)).count();
+    Between::Surfaces(pair, 2 * touching > looked_at.len())
+}
+
+/// Whether two surfaces have one tangent plane near a point, up to the tolerance.
+fn touches(p: Vector3<f64>, [a, b]: [&Surface; 2], scale: &SolidOptions) -> bool {
+    if sine(a, b, p).is_none_or(|sine| sine > STEEP) {
+        return false;
+    }
+    let conditions = [Condition::On(a), Condition::On(b), Condition::Touch(a, b)];
+    meet(p, &conditions, scale.cell).is_some_and(|(q, off)| {
+        let parallel = sine(a, b, q).is_some_and(|sine| sine < 1e-3);
+        parallel && off <= scale.tolerance && (q - p).norm() <= FAR * scale.cell
+    })
+}
+
+/// The places of all corners by their vertices of the mesh, and those for which none was found.
+fn nodes(
+    net: &Net,
+    groups: &Groups,
+    labels: &Labels,
+    chains: &Chains,
+    between: &[Between],
+    scale: &SolidOptions,
+) -> (BTreeMap<u32, Vector3<f64>>, Vec<u32>) {
+    let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (number, chain) in chains.all.iter().enumerate() {
+        for vertex in [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]] {
+            around.entry(vertex).or_default().push(number as u32);
+        }
+    }
+    let mut failed = Vec::new();
+    let mut places = BTreeMap::new();
+    for (vertex, own) in &around {
+        let start = net.place(*vertex);
+        if let Ok(tip) = chains.tips.binary_search_by_key(vertex, |(vertex, _)| *vertex) {
+            places.insert(*vertex, chains.tips[tip].1);
+            continue;
+        }
+        let mut conditions: Vec<Condition> = Vec::new();
+        let mut known: Vec<u32> = Vec::new();
+        for number in own {
+            for face in chains.all[*number as usize].faces {
+                let label = groups.label[face as usize];
+                if label != FREE && !known.contains(&label) {
+                    known.push(label);
+                    conditions.push(Condition::On(&labels.all[label as usize].surface));
+                }
+            }
+            if let Between::Surfaces([a, b], touch) = between[*number as usize] {
+                if touch {
+                    conditions.push(Condition::Touch(a, b));
+                }
+                conditions.push(Condition::On(b));
+            }
+        }
+        let found = meet(start, &conditions, scale.cell)
+            .filter(|(p, off)| *off <= scale.tolerance && (p - start).norm() <= FAR * scale.cell);
+        if found.is_none() {
+            failed.push(*vertex);
+        }
+        places.insert(*vertex, found.map_or(start, |(p, _)| p));
+    }
+    (places, failed)
+}
+
+/// Makes one vertex of those that fell together at the ends of a short chain.
+fn collapse(
+    net: &Net,
+    chains: &Chains,
+    numbers: &mut BTreeMap<u32, u32>,
+    vertices: &mut [Vector3<f64>],
+    scale: &SolidOptions,
+) {
+    let mut root: Vec<u32> = (0..vertices.len() as u32).collect();
+    let find = |root: &[u32], mut vertex: u32| {
+        while root[vertex as usize] != vertex {
+            vertex = root[vertex as usize];
+        }
+        vertex
+    };
+    for chain in &chains.all {
+        let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]].map(|vertex| numbers[&vertex]);
+        let [a, b] = ends.map(|vertex| find(&root, vertex));
+        let apart = (vertices[a as usize] - vertices[b as usize]).norm();
+        if a != b && apart <= 4.0 * scale.tolerance && extent(net, chain) < FAR * scale.cell {
+            root[a.max(b) as usize] = a.min(b);
+        }
+    }
+    for number in numbers.values_mut() {
+        *number = find(&root, *number);
+    }
+}
+
+/// An edge to be, with points on its way.
+fn course<'a>(
+    net: &Net,
+    chain: &Chain,
+    surfaces: [&'a Surface; 2],
+    touch: bool,
+    vertices: [u32; 2],
+    ends: [Vector3<f64>; 2],
+    scale: &SolidOptions,
+) -> Course<'a> {
+    let [a, b] = surfaces;
+    let mut conditions = vec![Condition::On(a), Condition::On(b)];
+    if touch {
+        conditions.push(Condition::Touch(a, b));
+    }
+    let guide = |vertex: u32| {
+        let start = net.place(vertex);
+        let (p, off) = meet(start, &conditions, scale.cell)?;
+        (off <= scale.tolerance && (p - start).norm() <= FAR * scale.cell).then_some(p)
+    };
+    let inner = if chain.vertices.len() > 2 { some(chain, GUIDES) } else { Vec::new() };
+    let length = chain.vertices.windows(2).map(|pair| (net.place(pair[1]) - net.place(pair[0])).norm());
+    // An end that three surfaces only nearly have in common is as near to the edge as to them.
+    let off = |p: Vector3<f64>, surface: &Surface| surface.at(p).map_or(0.0, |(d, _)| d.abs());
+    let missed = ends.iter().flat_map(|p| [off(*p, a), off(*p, b)]).fold(0.0, f64::max);
+    Course {
+        surfaces,
+        touch,
+        vertices,
+        ends,
+        guides: inner.into_iter().filter_map(guide).collect(),
+        length: length.sum(),
+        cell: scale.cell,
+        tolerance: (0.1 * scale.tolerance + missed).max(if touch { scale.tolerance } else { 0.0 }),
+    }
+}
