@@ -81,7 +81,8 @@ pub struct Solid {
 
 impl Solid {
     /// The solid of a surface whose interval ends are on surfaces that `candidates` knows: all that the source of an
-    /// end may have left, whether they pass through the end or not.
+    /// end may have left, whether they pass through the end or not. It is asked once for all ends of a move, and for
+    /// each end of the stock.
     ///
     /// # Errors
     /// [`SolidError`]: a mesh that is not closed, or more faces than a file could be used with.

@@ -355,6 +355,8 @@ pub(crate) enum Output {
     Binary,
     /// part.tridexels: the same along x, y and z, so that later runs go on with sharp walls; not written by default
     Tridexels,
+    /// part.step: planes, cylinders and other surfaces with their edges, for CAD systems; not written by default
+    Step,
     /// certificate.json: what `verify` has proven, for `check`
     Certificate,
 }

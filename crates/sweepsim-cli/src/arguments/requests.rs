@@ -126,6 +126,7 @@ impl Output {
             Self::Report => job::Output::Report,
             Self::Binary => job::Output::Binary,
             Self::Tridexels => job::Output::Tridexels,
+            Self::Step => job::Output::Step,
             Self::Certificate => job::Output::Certificate,
         }
     }

@@ -291,6 +291,15 @@ impl Request {
         self.wanted().contains(&output)
     }
 
+    /// An output that needs dexels along x, y and z: its file, and what asks for it.
+    pub(crate) fn needs_three_axes(&self) -> Option<(&'static str, &'static str)> {
+        let asked = |output| self.outputs.contains(&output);
+        if asked(Output::Tridexels) {
+            return Some(("part.tridexels", "only tridexels"));
+        }
+        asked(Output::Step).then_some(("part.step", "only step"))
+    }
+
     /// The files that it names, but for its input.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut request = self.clone();

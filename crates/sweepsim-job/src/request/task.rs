@@ -58,6 +58,8 @@ pub enum Output {
     Binary,
     /// `part.tridexels`: the same along x, y and z, so that later runs go on with sharp walls.
     Tridexels,
+    /// `part.step`: planes, cylinders and other surfaces with the edges between them, for CAD systems.
+    Step,
     /// `certificate.json`: what [`Task::Verify`] has proven, for [`check`](crate::check).
     Certificate,
 }

@@ -8,6 +8,7 @@ mod merge;
 mod outcome;
 mod section;
 mod shard;
+mod solid;
 
 pub use merge::Merge;
 pub use outcome::{Outcome, Reused, Written};

@@ -211,11 +211,14 @@ impl Outcome {
         }
         let (mut picture, mut uncertified, mut sharp) = (None, 0, None);
         let surface = wants(Output::Mesh) || wants(Output::Picture);
-        if surface || wants(Output::Tridexels) {
+        if surface || wants(Output::Tridexels) || wants(Output::Step) {
             let (solid, open) = files::solid(session, done, &mut report)?;
             uncertified = open;
             if let (Some(solid), true) = (&solid, wants(Output::Tridexels)) {
                 files::write_tri(solid, session, sink, &mut report)?;
+            }
+            if let (Some(solid), true) = (&solid, wants(Output::Step)) {
+                super::solid::write(solid, session, sink, &mut report)?;
             }
             if surface {
                 let mesh = files::mesh(solid.as_ref(), session, done, &mut report)?;

@@ -144,7 +144,7 @@ pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
         Task::Verify => verify::sets(session)?.0,
         Task::Simulate | Task::Sweep | Task::Section => vec![TilingSet::new("along z", job.grid, None, tile)],
     };
-    let outputs = [Output::Mesh, Output::Picture, Output::Tridexels];
+    let outputs = [Output::Mesh, Output::Picture, Output::Tridexels, Output::Step];
     let surface = outputs.into_iter().any(|output| request.wants(output));
     if surface && along_three_axes(session, session::stock_heights(job)) == Ok(true) {
         let aside = session::grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
@@ -160,7 +160,7 @@ pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
 /// too many. `heights`: of what is made.
 pub(super) fn along_three_axes(session: Session, heights: Option<[f64; 2]>) -> Result<bool, String> {
     let (job, request) = (session.job, session.request);
-    if request.outputs.contains(&Output::Tridexels) {
+    if request.needs_three_axes().is_some() {
         return Ok(true);
     }
     if let Some(directions) = request.directions {

@@ -4,7 +4,7 @@ use super::check;
 use crate::base::cache::{Digest, RunCache};
 use crate::base::kind::Kind;
 use crate::base::{JobError, check_room, folder_name, least_memory};
-use crate::request::{Directions, Given, Input, Output, ProgramOptions, Request, Task};
+use crate::request::{Directions, Given, Input, ProgramOptions, Request, Task};
 use crate::shards::PieceFile;
 use crate::warnings;
 use std::path::{Path, PathBuf};
@@ -247,13 +247,13 @@ impl Plan {
 
     /// The directions that were asked for must be possible.
     fn check_directions(&self) -> Result<(), JobError> {
-        let tridexels = self.request.outputs.contains(&Output::Tridexels);
-        let asked = match (self.request.directions, tridexels) {
-            (Some(Directions::Z), true) => {
-                let why = "part.tridexels has dexels along x, y and z: expected --directions xyz";
+        let three = self.request.needs_three_axes();
+        let asked = match (self.request.directions, three) {
+            (Some(Directions::Z), Some((file, _))) => {
+                let why = format!("{file} is made of dexels along x, y and z: expected --directions xyz");
                 return Err(JobError::request("directions z", why));
             }
-            (_, true) => "only tridexels",
+            (_, Some((_, asked))) => asked,
             (Some(Directions::Xyz), _) => "directions xyz",
             _ => return Ok(()),
         };

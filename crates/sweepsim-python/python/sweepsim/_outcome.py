@@ -178,7 +178,7 @@ class Outcome:
 
         Each file is written completely or not at all.
 
-        :param outputs: some of ``dexels``, ``mesh``, ``picture``, ``report``, ``binary``, ``tridexels``, ``certificate``.
+        :param outputs: some of ``dexels``, ``mesh``, ``picture``, ``report``, ``binary``, ``tridexels``, ``step``, ``certificate``.
         """
         return self._native.save(os.fspath(folder), json.dumps(list(outputs)), progress)
 

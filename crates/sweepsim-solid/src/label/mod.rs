@@ -65,9 +65,13 @@ pub(crate) fn labels(net: &Net, candidates: &dyn Fn(&SurfaceEnd) -> Vec<Surface>
         dividers: BTreeMap::new(),
     };
     for group in order.chunk_by(|a, b| key(&ends[*a as usize]) == key(&ends[*b as usize])) {
-        let own = candidates(&ends[group[0] as usize]);
+        let mut own = candidates(&ends[group[0] as usize]);
         for number in group {
             let end = &ends[*number as usize];
+            // A stock may have many faces.
+            if end.source == Source::Stock && *number != group[0] {
+                own = candidates(end);
+            }
             let found = own.iter().filter_map(|surface| Some((on(end, surface, tolerance)?, surface)));
             let nearest = found.min_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
             if let Some(((_, outward), surface)) = nearest {
