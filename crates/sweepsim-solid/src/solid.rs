@@ -114,6 +114,13 @@ impl Solid {
             let chains = chains(&net, &groups, &labels, options.cell);
             let placed = place(&net, &groups, &labels, &chains, &options);
             let made = faces(&net, &groups, &labels, &chains, &placed, options.tolerance);
+            if std::env::var("SDEBUG").is_ok() { // DEBUG
+                let free: Vec<usize> = (0..labels.of.len()).filter(|k| labels.of[*k] == FREE).collect(); // DEBUG
+                eprintln!("round {round}: free {} of {}, groups {}, failed vertices {}, failed triangles {}", free.len(), labels.of.len(), groups.count(), placed.failed.len(), made.failed.len()); // DEBUG
+                for k in free.iter().step_by(free.len() / 12 + 1) { eprintln!("   {:?}", net.ends.ends[*k]); } // DEBUG
+                for v in placed.failed.iter().take(8) { eprintln!("   failed {:?}", net.place(*v)); } // DEBUG
+                for v in made.failed.iter().take(4) { eprintln!("   failed face {:?} {:?}", net.place(net.mesh.triangles[*v as usize][0]), labels.all.get(labels.of[net.end_of(*v as usize) as usize] as usize)); } // DEBUG
+            } // DEBUG
             let given_up = give_up(&net, &groups, &mut labels, &placed, &made);
             if given_up == 0 || round == ROUNDS {
                 return Ok(Self::of(&net, &groups, &labels, &chains, placed, made, options));

@@ -17,6 +17,13 @@ pub(crate) struct Chain {
     pub vertices: Vec<u32>,
 }
 
+impl Chain {
+    /// Its first and its last vertex.
+    pub fn ends(&self) -> [u32; 2] {
+        [self.vertices[0], self.vertices[self.vertices.len() - 1]]
+    }
+}
+
 /// All of them.
 pub(crate) struct Chains {
     pub all: Vec<Chain>,

@@ -15,8 +15,10 @@ use std::collections::BTreeMap;
 const GUIDES: usize = 24;
 /// How far points may be moved onto surfaces, in cells.
 const FAR: f64 = 2.0;
-/// Surfaces at larger angles than this, as a sine, do not touch within a cell.
-const STEEP: f64 = 0.5;
+/// Corners with a shorter chain between them may be one, in cells.
+const SHORT: f64 = 1.5;
+/// Surfaces that meet at larger angles than this, as a sine, cross there, although they may touch nearby.
+const CROSSING: f64 = 0.1;
 
 /// Where chains and their corners are.
 pub(crate) struct Placed {
@@ -50,8 +52,7 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
     collapse(net, chains, &mut numbers, &mut vertices, scale);
     let mut edges = Vec::with_capacity(chains.all.len());
     for (chain, between) in chains.all.iter().zip(&between) {
-        let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]];
-        let own = ends.map(|vertex| numbers[&vertex]);
+        let own = chain.ends().map(|vertex| numbers[&vertex]);
         if own[0] == own[1] && extent(net, chain) < FAR * scale.cell {
             edges.push(None);
             continue;
@@ -65,6 +66,7 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
             }),
             Between::Surfaces(surfaces, touch) => course(net, chain, *surfaces, *touch, own, ends, scale).edge(),
         };
+        if edge.is_none() && std::env::var("SDEBUG").is_ok() { if let Between::Surfaces(s, t) = between { eprintln!("no edge {:?} {:?} touch {t} ends {ends:?} mesh {:?} {:?} n {} guides {:?}", s[0], s[1], net.place(chain.vertices[0]), net.place(chain.ends()[1]), chain.vertices.len(), course(net, chain, *s, *t, own, ends, scale).guides.iter().take(3).collect::<Vec<_>>()); } } // DEBUG
         if edge.is_none() {
             failed.extend(&chain.vertices);
         }
@@ -108,14 +110,24 @@ fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, sc
 
 /// Whether two surfaces have one tangent plane near a point, up to the tolerance.
 fn touches(p: Vector3<f64>, [a, b]: [&Surface; 2], scale: &SolidOptions) -> bool {
-    if sine(a, b, p).is_none_or(|sine| sine > STEEP) {
+    let conditions = [Condition::On(a), Condition::On(b), Condition::Touch(a, b)];
+    let crossing = meet(p, &conditions[..2], scale.cell).filter(|(_, off)| *off <= 0.1 * scale.tolerance);
+    if crossing.and_then(|(q, _)| sine(a, b, q)).is_some_and(|sine| sine > CROSSING) {
         return false;
     }
-    let conditions = [Condition::On(a), Condition::On(b), Condition::Touch(a, b)];
     meet(p, &conditions, scale.cell).is_some_and(|(q, off)| {
         let parallel = sine(a, b, q).is_some_and(|sine| sine < 1e-3);
         parallel && off <= scale.tolerance && (q - p).norm() <= FAR * scale.cell
     })
+}
+
+/// The conditions of a corner.
+#[derive(Default)]
+struct Corner<'a> {
+    labels: Vec<u32>,
+    conditions: Vec<Condition<'a>>,
+    place: Vector3<f64>,
+    found: bool,
 }
 
 /// The places of all corners by their vertices of the mesh, and those for which none was found.
@@ -127,45 +139,63 @@ fn nodes(
     between: &[Between],
     scale: &SolidOptions,
 ) -> (BTreeMap<u32, Vector3<f64>>, Vec<u32>) {
-    let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (number, chain) in chains.all.iter().enumerate() {
-        for vertex in [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]] {
-            around.entry(vertex).or_default().push(number as u32);
+    let mut corners: BTreeMap<u32, Corner> = BTreeMap::new();
+    for (chain, between) in chains.all.iter().zip(between) {
+        for vertex in chain.ends() {
+            let corner = corners.entry(vertex).or_default();
+            for face in chain.faces {
+                let label = groups.label[face as usize];
+                if label != FREE && !corner.labels.contains(&label) {
+                    corner.labels.push(label);
+                    corner.conditions.push(Condition::On(&labels.all[label as usize].surface));
+                }
+            }
+            if let Between::Surfaces([a, b], touch) = *between {
+                if touch {
+                    corner.conditions.push(Condition::Touch(a, b));
+                }
+                corner.conditions.push(Condition::On(b));
+            }
         }
     }
-    let mut failed = Vec::new();
-    let mut places = BTreeMap::new();
-    for (vertex, own) in &around {
+    let near = |p: Vector3<f64>, vertex: u32| (p - net.place(vertex)).norm() <= FAR * scale.cell;
+    for (vertex, corner) in &mut corners {
         let start = net.place(*vertex);
-        if let Ok(tip) = chains.tips.binary_search_by_key(vertex, |(vertex, _)| *vertex) {
-            places.insert(*vertex, chains.tips[tip].1);
+        let tip = chains.tips.binary_search_by_key(vertex, |(vertex, _)| *vertex);
+        let found = match tip {
+            Ok(tip) => Some(chains.tips[tip].1),
+            Err(_) => meet(start, &corner.conditions, scale.cell)
+                .filter(|(p, off)| *off <= scale.tolerance && near(*p, *vertex))
+                .map(|(p, _)| p),
+        };
+        (corner.place, corner.found) = (found.unwrap_or(start), found.is_some());
+    }
+    // Where four faces or more meet in a point, the mesh may have two corners with a short chain between them.
+    for (chain, between) in chains.all.iter().zip(between) {
+        let [a, b] = chain.ends();
+        let short = a != b && matches!(between, Between::Surfaces(..)) && extent(net, chain) < SHORT * scale.cell;
+        let (Some(one), Some(two)) = (corners.get(&a).filter(|_| short), corners.get(&b)) else {
+            continue;
+        };
+        let all = one.labels.iter().chain(two.labels.iter().filter(|label| !one.labels.contains(label)));
+        if all.count() == one.labels.len().max(two.labels.len()) {
             continue;
         }
-        let mut conditions: Vec<Condition> = Vec::new();
-        let mut known: Vec<u32> = Vec::new();
-        for number in own {
-            for face in chains.all[*number as usize].faces {
-                let label = groups.label[face as usize];
-                if label != FREE && !known.contains(&label) {
-                    known.push(label);
-                    conditions.push(Condition::On(&labels.all[label as usize].surface));
-                }
-            }
-            if let Between::Surfaces([a, b], touch) = between[*number as usize] {
-                if touch {
-                    conditions.push(Condition::Touch(a, b));
-                }
-                conditions.push(Condition::On(b));
-            }
-        }
+        let conditions: Vec<Condition> = one.conditions.iter().chain(&two.conditions).copied().collect();
+        let start = (net.place(a) + net.place(b)) * 0.5;
         let found = meet(start, &conditions, scale.cell)
-            .filter(|(p, off)| *off <= scale.tolerance && (p - start).norm() <= FAR * scale.cell);
-        if found.is_none() {
-            failed.push(*vertex);
+            .filter(|(p, off)| *off <= scale.tolerance && near(*p, a) && near(*p, b));
+        if let Some((place, _)) = found {
+            for vertex in [a, b] {
+                if let Some(corner) = corners.get_mut(&vertex) {
+                    (corner.place, corner.found) = (place, true);
+                }
+            }
         }
-        places.insert(*vertex, found.map_or(start, |(p, _)| p));
     }
-    (places, failed)
+    let failed = corners.iter().filter(|(_, corner)| !corner.found).map(|(vertex, _)| *vertex);
+    let failed = failed.collect();
+    (corners.into_iter().map(|(vertex, corner)| (vertex, corner.place)).collect(), failed)
 }
 
 /// Makes one vertex of those that fell together at the ends of a short chain.
@@ -184,7 +214,7 @@ fn collapse(
         vertex
     };
     for chain in &chains.all {
-        let ends = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]].map(|vertex| numbers[&vertex]);
+        let ends = chain.ends().map(|vertex| numbers[&vertex]);
         let [a, b] = ends.map(|vertex| find(&root, vertex));
         let apart = (vertices[a as usize] - vertices[b as usize]).norm();
         if a != b && apart <= 4.0 * scale.tolerance && extent(net, chain) < FAR * scale.cell {

@@ -2,7 +2,7 @@
 
 use super::curve::{Curve, Edge, hermite};
 use crate::chart::wrapped;
-use crate::solve::{Condition, meet, tangent};
+use crate::solve::{Condition, meet, sine, tangent};
 use crate::surface::Surface;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -14,6 +14,10 @@ const CHECKED: usize = 16;
 const FINER: usize = 5;
 /// The most steps along a spline.
 const MOST_STEPS: usize = 20_000;
+/// Where the sine between surfaces is less, it does not tell the direction of their curve; this far from there, in
+/// cells, it does.
+const PARALLEL: f64 = 1e-2;
+const BESIDE: f64 = 0.02;
 
 /// An edge to be: two surfaces, two ends, and points on its way.
 pub(super) struct Course<'a> {
@@ -113,14 +117,19 @@ impl<'a> Course<'a> {
         (whole.abs() < TAU && (whole - total).abs() < FRAC_PI_2).then_some(whole)
     }
 
-    fn circle(&self) -> Option<Edge> {
+    /// Three points of the way, the first of them its start.
+    fn three(&self) -> Option<[Vector3<f64>; 3]> {
         let [from, to] = self.ends;
-        let (b, c) = if self.is_closed() {
+        if self.is_closed() {
             let third = self.guides.len() / 3;
-            (*self.guides.get(third)?, *self.guides.get(2 * third)?)
+            Some([from, *self.guides.get(third)?, *self.guides.get(2 * third)?])
         } else {
-            (self.middle()?, to)
-        };
+            Some([from, self.middle()?, to])
+        }
+    }
+
+    fn circle(&self) -> Option<Edge> {
+        let [from, b, c] = self.three()?;
         // The centre of the circle through three points.
         let (u, v) = (b - from, c - from);
         let normal = u.cross(&v);
@@ -141,10 +150,11 @@ impl<'a> Course<'a> {
             radius,
             angle: angle.abs(),
         })
-        .filter(|edge| (edge.at(1.0) - to).norm() <= self.tolerance)
+        .filter(|edge| (edge.at(1.0) - self.ends[1]).norm() <= self.tolerance)
     }
 
-    /// Where a plane cuts a cylinder.
+    /// Where a plane cuts a cylinder: one of the surfaces, or that of the edge itself, as where cylinders of one radius
+    /// cross.
     fn ellipse(&self) -> Option<Edge> {
         let [a, b] = self.surfaces.map(|surface| match surface {
             Surface::Analytic(surface) => Some(*surface),
@@ -153,6 +163,10 @@ impl<'a> Course<'a> {
         let (normal, of, cylinder) = match (a?, b?) {
             (A::Plane { origin, normal }, cylinder) | (cylinder, A::Plane { origin, normal }) => {
                 (Vector3::from(normal), Vector3::from(origin), cylinder)
+            }
+            (cylinder, A::Cylinder { .. }) => {
+                let [from, b, c] = self.three()?;
+                ((b - from).cross(&(c - from)).try_normalize(1e-9 * self.cell * self.cell)?, from, cylinder)
             }
             _ => return None,
         };
@@ -213,6 +227,24 @@ impl<'a> Course<'a> {
         fits.then_some(edge)
     }
 
+    /// The direction of the curve at an end, away from it. Where the surfaces touch at the end only, their normals do not
+    /// tell, but those a little farther on.
+    fn way_at(&self, end: Vector3<f64>, ahead: Vector3<f64>) -> Option<Vector3<f64>> {
+        let conditions = self.conditions();
+        let way_at = |p: Vector3<f64>| {
+            let way = tangent(p, &conditions, self.cell)?;
+            Some(if way.dot(&ahead) < 0.0 { -way } else { way })
+        };
+        let [a, b] = self.surfaces;
+        if self.touch || sine(a, b, end).is_some_and(|sine| sine >= PARALLEL) {
+            return way_at(end);
+        }
+        let off = ahead.try_normalize(0.0)? * (BESIDE * self.cell);
+        let (near, _) = meet(end + off, &conditions, self.cell)?;
+        let (far, _) = meet(near + (near - end), &conditions, self.cell)?;
+        (way_at(near)? * 2.0 - way_at(far)?).try_normalize(0.5)
+    }
+
     /// Points of the curve with its tangents, from end to end.
     fn trace(&self, step: f64) -> Option<(Vec<Vector3<f64>>, Vec<Vector3<f64>>)> {
         let conditions = self.conditions();
@@ -220,24 +252,21 @@ impl<'a> Course<'a> {
         let most = (4.0 * self.length / step) as usize + 20;
         let ahead = self.guides.iter().chain([&to]).find(|guide| (*guide - from).norm() > 0.75 * self.cell);
         let ahead = ahead.unwrap_or(&to) - from;
-        let mut way = tangent(from, &conditions, self.cell)?;
-        if way.dot(&ahead) < 0.0 {
-            way = -way;
-        }
+        let mut way = self.way_at(from, ahead)?;
         let (mut points, mut tangents) = (vec![from], vec![way]);
         let mut p = from;
         while points.len() < most.min(MOST_STEPS) {
             let rest = to - p;
             let far = rest.norm();
             if (points.len() > 4 || !self.is_closed()) && far <= 1.3 * step && rest.dot(&way) >= 0.0 {
-                let last = tangent(to, &conditions, self.cell)?;
+                let last = -self.way_at(to, p - to)?;
                 // Where the end is all but reached already, it takes the place of the last point.
                 if far < 0.2 * step && points.len() > 1 {
                     points.pop();
                     tangents.pop();
                 }
                 points.push(to);
-                tangents.push(if last.dot(&way) < 0.0 { -last } else { last });
+                tangents.push(last);
                 return Some((points, tangents));
             }
             let (next, off) = meet(p + way * step, &conditions, step)?;

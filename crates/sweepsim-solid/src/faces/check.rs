@@ -38,6 +38,7 @@ pub(super) fn outer_first(
     let sign = if outward { 1.0 } else { -1.0 };
     let areas: Vec<f64> = polygons.iter().map(|polygon| sign * area(polygon)).collect();
     let outer: Vec<usize> = (0..areas.len()).filter(|k| areas[*k] > 0.0).collect();
+    if std::env::var("SDEBUG").is_ok() { if outer.len() != 1 { eprintln!("areas {areas:?} {:?}", polygons.iter().map(|p| p.iter().take(40).collect::<Vec<_>>()).collect::<Vec<_>>()); } } // DEBUG
     let [outer] = outer[..] else { return None };
     let scale = chart.scale();
     let scaled: Vec<Vec<[f64; 2]>> = polygons
@@ -45,6 +46,7 @@ pub(super) fn outer_first(
         .map(|polygon| polygon.iter().map(|p| [p[0] * scale[0], p[1] * scale[1]]).collect())
         .collect();
     if crosses(&scaled) {
+        if std::env::var("SDEBUG").is_ok() { eprintln!("crossing {areas:?} {:?}", polygons.iter().map(|p| p.iter().take(40).collect::<Vec<_>>()).collect::<Vec<_>>()); } // DEBUG
         return None;
     }
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
