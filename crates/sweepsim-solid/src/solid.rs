@@ -164,6 +164,12 @@ fn give_up(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, mad
     for vertex in &placed.failed {
         wrong[*vertex as usize] = true;
     }
+    // Triangles that lost their area where their corners were moved onto surfaces: the mesh has it.
+    for triangle in made.failed.iter().filter(|t| groups.is_free(groups.of[**t as usize] as usize)) {
+        for vertex in net.mesh.triangles[*triangle as usize] {
+            wrong[vertex as usize] = true;
+        }
+    }
     let mut given_up = 0;
     let mut free = |labels: &mut Labels, triangle: usize| {
         let label = &mut labels.of[net.end_of(triangle) as usize];

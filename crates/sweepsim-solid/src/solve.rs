@@ -47,7 +47,7 @@ pub(crate) fn meet(start: Vector3<f64>, conditions: &[Condition], length: f64) -
     let mut off: f64 = 0.0;
     for condition in conditions {
         if let Condition::On(surface) = condition {
-            off = off.max(surface.at(p)?.0.abs());
+            off = off.max(surface.off(p));
         }
     }
     Some((p, off))

@@ -50,8 +50,7 @@ pub(crate) fn summary(
         for (edge, _) in face.loops.iter().flatten() {
             let Some(edge) = &placed.edges[*edge as usize] else { continue };
             for k in 0..=8 {
-                let off = face.surface.at(edge.at(f64::from(k) / 8.0)).map_or(0.0, |(d, _)| d.abs());
-                summary.gap = summary.gap.max(off);
+                summary.gap = summary.gap.max(face.surface.off(edge.at(f64::from(k) / 8.0)));
             }
         }
     }
@@ -67,7 +66,7 @@ pub(crate) fn summary(
             let number = net.end_of(*triangle as usize);
             let end = &net.ends.ends[number as usize];
             let Some(face) = face.filter(|_| end.normal.is_some()) else { continue };
-            let off = face.surface.at(end.place.into()).map_or(0.0, |(d, _)| d.abs());
+            let off = face.surface.off(end.place.into());
             if face.is_facet {
                 let least = nearest.entry(number).or_insert(f64::INFINITY);
                 *least = least.min(off);

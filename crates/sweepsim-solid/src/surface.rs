@@ -26,6 +26,15 @@ impl Surface {
         }
     }
 
+    /// How far a point is from the surface: from the tip of a cone where it is there or beyond it.
+    pub(crate) fn off(&self, p: Vector3<f64>) -> f64 {
+        match (self.at(p), self) {
+            (Some((distance, _)), _) => distance.abs(),
+            (None, Self::Analytic(AnalyticSurface::Cone { apex, .. })) => (p - Vector3::from(*apex)).norm(),
+            (None, _) => f64::INFINITY,
+        }
+    }
+
     /// How the direction changes along each axis, by differences over a part of a length.
     pub(crate) fn bend(&self, p: Vector3<f64>, length: f64) -> Option<[Vector3<f64>; 3]> {
         let step = STEP * length;

@@ -249,8 +249,7 @@ fn course<'a>(
     let inner = if chain.vertices.len() > 2 { some(chain, GUIDES) } else { Vec::new() };
     let length = chain.vertices.windows(2).map(|pair| (net.place(pair[1]) - net.place(pair[0])).norm());
     // An end that three surfaces only nearly have in common is as near to the edge as to them.
-    let off = |p: Vector3<f64>, surface: &Surface| surface.at(p).map_or(0.0, |(d, _)| d.abs());
-    let missed = ends.iter().flat_map(|p| [off(*p, a), off(*p, b)]).fold(0.0, f64::max);
+    let missed = ends.iter().flat_map(|p| [a.off(*p), b.off(*p)]).fold(0.0, f64::max);
     Course {
         surfaces,
         touch,

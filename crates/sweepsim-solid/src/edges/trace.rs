@@ -66,10 +66,9 @@ impl<'a> Course<'a> {
     /// The edge with a curve, if that is on both surfaces.
     fn checked(&self, curve: Curve) -> Option<Edge> {
         let edge = self.with(curve);
-        let off = |p: Vector3<f64>, surface: &Surface| surface.at(p).map_or(f64::INFINITY, |(d, _)| d.abs());
         let near = (0..=CHECKED).all(|k| {
             let p = edge.at(k as f64 / CHECKED as f64);
-            self.surfaces.iter().all(|surface| off(p, surface) <= self.tolerance)
+            self.surfaces.iter().all(|surface| surface.off(p) <= self.tolerance)
         });
         near.then_some(edge)
     }
@@ -219,10 +218,9 @@ impl<'a> Course<'a> {
         let last = *knots.last()?;
         let middles: Vec<f64> = knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) / last).collect();
         let edge = self.with(curve);
-        let off = |p: Vector3<f64>, surface: &Surface| surface.at(p).map_or(f64::INFINITY, |(d, _)| d.abs());
         let fits = middles.iter().all(|part| {
             let p = edge.at(*part);
-            self.surfaces.iter().all(|surface| off(p, surface) <= self.tolerance)
+            self.surfaces.iter().all(|surface| surface.off(p) <= self.tolerance)
         });
         fits.then_some(edge)
     }

@@ -5,7 +5,7 @@ mod shells;
 
 pub(crate) use shells::shells;
 
-use crate::chart::Chart;
+use crate::chart::{Chart, across};
 use crate::edges::{Chains, Edge, Placed};
 use crate::label::{FREE, Groups, Labels};
 use crate::net::Net;
@@ -135,11 +135,14 @@ fn facet(net: &Net, triangle: usize, loops: Vec<Vec<Use>>, placed: &Placed) -> O
     let [a, b, c] = corners[..] else { return None };
     let normal = (b - a).cross(&(c - a));
     let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-    let normal = normal.try_normalize(1e-7 * longest * longest)?;
-    // Turned over by what moved its corners.
-    if normal.dot(&net.area(triangle)) <= 0.0 && net.area(triangle).norm() > 1e-3 * longest * longest {
+    let own = net.area(triangle);
+    let moved = (0..3).any(|k| net.place(net.mesh.triangles[triangle][k]) != corners[k]);
+    // Flat, or turned over by what moved its corners. The mesh has triangles without area, too.
+    let flat = 1e-6 * longest * longest;
+    if moved && (normal.norm() <= flat || own.norm() > flat && normal.dot(&own) <= 0.0) {
         return None;
     }
+    let normal = normal.try_normalize(flat).unwrap_or_else(|| across((b - a).try_normalize(0.0).unwrap_or(own)));
     let surface = Surface::Analytic(A::Plane {
         origin: a.into(),
         normal: normal.into(),

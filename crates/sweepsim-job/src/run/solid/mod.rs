@@ -4,7 +4,7 @@ mod moves;
 mod stock;
 mod surfaces;
 
-use crate::base::words::{counted, length};
+use crate::base::words::count as numbered;
 use crate::base::{JobError, Sink};
 use crate::session::{Session, phase};
 use moves::{Piece, left_by, pieces};
@@ -14,15 +14,15 @@ use sweepsim_dexel::{Source, SurfaceEnd, TriDexels};
 use sweepsim_formats::Report;
 use sweepsim_solid::{Solid, SolidOptions, StepHeader, Summary, Surface, write_step};
 
-/// Kinds of faces with their plurals, in the order in which they are counted.
-const KINDS: [(&str, &str); 7] = [
-    ("plane", "planes"),
-    ("cylinder", "cylinders"),
-    ("cone", "cones"),
-    ("sphere", "spheres"),
-    ("torus", "tori"),
-    ("sheet", "ruled sheets"),
-    ("facet", "triangles"),
+/// Kinds of faces with one of them and several, in the order in which they are counted.
+const KINDS: [(&str, &str, &str); 7] = [
+    ("plane", "plane", "planes"),
+    ("cylinder", "cylinder", "cylinders"),
+    ("cone", "cone", "cones"),
+    ("sphere", "sphere", "spheres"),
+    ("torus", "torus", "tori"),
+    ("sheet", "ruled sheet", "ruled sheets"),
+    ("facet", "triangle", "triangles"),
 ];
 
 /// Writes `part.step`.
@@ -73,42 +73,53 @@ fn in_words(solid: &Solid) -> String {
     let summary = &solid.summary;
     let parts: Vec<String> = KINDS
         .iter()
-        .filter_map(|(kind, plural)| {
+        .filter_map(|(kind, one, more)| {
             let count = *summary.faces.get(kind)?;
-            let name = if count == 1 { plural_of_one(plural, kind) } else { plural };
-            Some(format!("{count} {name}"))
+            Some(format!("{} {}", numbered(count as u64), if count == 1 { one } else { more }))
         })
         .collect();
-    let bodies = counted(solid.bodies.len() as u64, "body").replace("bodys", "bodies");
-    let faces = counted(solid.faces.len() as u64, "face");
-    format!(
-        "part.step, in millimetres: {bodies} of {faces}: {}. {}",
-        parts.join(", "),
-        shares(summary)
-    )
+    let bodies = match solid.bodies.len() {
+        1 => "one body".to_owned(),
+        several => format!("{} bodies", numbered(several as u64)),
+    };
+    format!("part.step, in millimetres: {bodies} of {}. {}", parts.join(", "), distances(summary))
 }
 
-fn plural_of_one<'a>(plural: &'a str, kind: &'a str) -> &'a str {
-    match kind {
-        "sheet" => "ruled sheet",
-        "facet" => "triangle",
-        _ if plural.is_empty() => plural,
-        _ => kind,
-    }
-}
-
-fn shares(summary: &Summary) -> String {
+fn distances(summary: &Summary) -> String {
     let mut text = format!(
-        "Dexels end within {} mm of the surfaces, which meet within {} mm at edges",
-        length(summary.deviation),
-        length(summary.gap)
+        "Dexels end within {} mm of these surfaces, and edges are within {} mm of them",
+        at_most(summary.deviation),
+        at_most(summary.gap)
     );
     if summary.faces.contains_key("facet") {
         let share = 100.0 * (1.0 - summary.share());
         text += &format!(
-            "; {share:.2} % of the area is triangles, up to {} mm from the ends of dexels: what the moves leave there is not known as a surface, or is finer than the dexels",
-            length(summary.facet_deviation)
+            "; triangles are {share:.2} % of the area, within {} mm of the ends of dexels: what moves leave there is not known as a surface, or finer than the dexels",
+            at_most(summary.facet_deviation)
         );
     }
     text
+}
+
+/// A length rounded up to one digit, a nanometre at least.
+fn at_most(value: f64) -> String {
+    let value = value.max(1e-6);
+    let power = value.log10().floor();
+    let digits = (value / 10f64.powf(power) - 1e-9).ceil();
+    let decimals = (-power).max(0.0) as usize;
+    format!("{:.decimals$}", digits * 10f64.powf(power))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_most;
+
+    #[test]
+    fn lengths_are_rounded_up() {
+        assert_eq!(at_most(0.0), "0.000001");
+        assert_eq!(at_most(0.0071), "0.008");
+        assert_eq!(at_most(0.03), "0.03");
+        assert_eq!(at_most(0.97), "1.0");
+        assert_eq!(at_most(12.3), "20");
+    }
 }
