@@ -1,10 +1,19 @@
 //! Parameters of surfaces: angles and heights, as files have them.
 
-use crate::label::Label;
 use crate::surface::Surface;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use sweepsim_dexel::AnalyticSurface as A;
+
+/// A surface with the side of it on which there is no material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Label {
+    pub surface: Surface,
+    /// Whether distances from the surface grow out of the material.
+    pub outward: bool,
+    /// Of spheres, the direction of a pole that is not on the face.
+    pub pole: Option<Vector3<f64>>,
+}
 
 /// A surface with a place where its angles begin.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +29,11 @@ const NO_ANGLE: f64 = 1e-9;
 
 /// A direction across another, the same for all that are nearly the same.
 pub(crate) fn across(axis: Vector3<f64>) -> Vector3<f64> {
-    let least = if axis.x.abs() <= 0.6 { Vector3::x() } else { Vector3::y() };
+    let least = if axis.x.abs() <= 0.6 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
     (least - axis * axis.dot(&least)).normalize()
 }
 

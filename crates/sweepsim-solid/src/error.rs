@@ -23,6 +23,14 @@ pub enum SolidError {
         /// Its value.
         value: f64,
     },
+    /// Some edges do not have two faces.
+    #[error(
+        "the solid does not close: {edges} edges do not have one face on each side, as where dexels are too coarse"
+    )]
+    Unclosed {
+        /// How many.
+        edges: usize,
+    },
     /// There are too many faces for a file that could be used.
     #[error("the solid would have {faces} faces: expected at most {most}, as of fewer dexels")]
     TooManyFaces {

@@ -10,11 +10,11 @@
 
 mod chart;
 mod edges;
-mod elliptic;
 mod error;
 mod faces;
 mod label;
 mod net;
+mod parts;
 mod solid;
 mod solve;
 mod step;
@@ -22,12 +22,12 @@ mod summary;
 mod surface;
 
 pub use edges::{Curve, Edge};
-pub use elliptic::EllipticSheet;
 pub use error::SolidError;
-pub use solid::{Body, Face, Solid, SolidOptions};
+pub use parts::{Body, Face, SolidOptions};
+pub use solid::Solid;
 pub use step::{StepHeader, write_step};
 pub use summary::Summary;
-pub use surface::Surface;
+pub use surface::{EllipticSheet, Surface};
 
 /// The README's example is tested.
 #[cfg(doctest)]

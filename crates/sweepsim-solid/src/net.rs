@@ -2,20 +2,25 @@
 
 use crate::error::SolidError;
 use nalgebra::Vector3;
+use std::borrow::Cow;
 use sweepsim_dexel::{Mesh, SurfaceEnds};
 
 /// Triangles and the triangle across each of their edges. Half-edge `3 t + k` of triangle `t` goes from corner `k` to
 /// the next.
 pub(crate) struct Net<'a> {
-    pub mesh: &'a Mesh,
-    pub ends: &'a SurfaceEnds,
+    pub mesh: Cow<'a, Mesh>,
+    pub ends: Cow<'a, SurfaceEnds>,
     pub across: Vec<u32>,
 }
 
 impl<'a> Net<'a> {
-    pub fn new(mesh: &'a Mesh, ends: &'a SurfaceEnds) -> Result<Self, SolidError> {
+    pub fn new(mesh: Cow<'a, Mesh>, ends: Cow<'a, SurfaceEnds>) -> Result<Self, SolidError> {
         let count = mesh.triangles.len();
-        let fits = mesh.triangles.iter().flatten().all(|v| (*v as usize) < mesh.vertices.len());
+        let fits = mesh
+            .triangles
+            .iter()
+            .flatten()
+            .all(|v| (*v as usize) < mesh.vertices.len());
         let told = ends.of_triangle.iter().all(|end| (*end as usize) < ends.ends.len());
         if count == 0 {
             return Err(SolidError::Empty);

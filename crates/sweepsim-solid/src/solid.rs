@@ -1,67 +1,25 @@
 //! The solid: surfaces, edges, and faces between them.
 
-use crate::edges::{Chains, Edge, Placed, chains, place};
+use crate::edges::{Edge, Placed, chains, place};
 use crate::error::SolidError;
-use crate::faces::{Faces, Use, faces, shells};
-use crate::label::{FREE, Groups, Labels, labels, split};
+use crate::faces::{Faces, faces, shells};
+use crate::label::{FREE, Groups, Labels, finer, labels, split};
 use crate::net::Net;
+use crate::parts::{Body, Face, SolidOptions};
 use crate::summary::{Summary, summary};
 use crate::surface::Surface;
 use nalgebra::Vector3;
+use std::borrow::Cow;
 use sweepsim_dexel::{Mesh, SurfaceEnd, SurfaceEnds};
 
 /// How often faces that cannot be made are given up for triangles.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 40;
+/// How often triangles beside curved faces are made finer.
+const FINEST: usize = 12;
 /// Smaller faces are given up as a whole.
 const SMALL: usize = 48;
 /// The most faces.
 const MOST_FACES: usize = 400_000;
-
-/// What a solid is made with.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct SolidOptions {
-    /// How far interval ends may be from the surfaces that made them.
-    pub tolerance: f64,
-    /// The distance of the dexels' lines.
-    pub cell: f64,
-}
-
-impl SolidOptions {
-    /// Options with these lengths.
-    #[must_use]
-    pub fn new(tolerance: f64, cell: f64) -> Self {
-        Self { tolerance, cell }
-    }
-}
-
-/// A face of a solid.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Face {
-    /// What it is part of.
-    pub surface: Surface,
-    /// Whether distances from the surface grow out of the material.
-    pub outward: bool,
-    /// Where angles begin, and across that, and the axis or the normal.
-    pub axes: [Vector3<f64>; 3],
-    /// Edges with whether they are passed from start to end, counter-clockwise seen from outside: the outer loop first.
-    pub loops: Vec<Vec<Use>>,
-    /// Whether it is a triangle of the mesh, because its surface is not known.
-    pub is_facet: bool,
-    /// The least and the largest of both parameters.
-    pub(crate) range: [[f64; 2]; 2],
-}
-
-/// A connected part of a solid.
-#[derive(Clone, Debug, Default)]
-#[non_exhaustive]
-pub struct Body {
-    /// The faces around it.
-    pub faces: Vec<u32>,
-    /// The faces around each of its hollows.
-    pub hollows: Vec<Vec<u32>>,
-}
 
 /// A boundary representation: every edge has two faces.
 #[derive(Clone, Debug)]
@@ -92,15 +50,20 @@ impl Solid {
         candidates: &dyn Fn(&SurfaceEnd) -> Vec<Surface>,
         options: SolidOptions,
     ) -> Result<Self, SolidError> {
-        for (what, value) in [("the tolerance", options.tolerance), ("the distance of lines", options.cell)] {
+        for (what, value) in [
+            ("the tolerance", options.tolerance),
+            ("the distance of lines", options.cell),
+        ] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(SolidError::Length { what, value });
             }
         }
-        let net = Net::new(mesh, ends)?;
+        let mut net = Net::new(Cow::Borrowed(mesh), Cow::Borrowed(ends))?;
         let size = size(mesh);
         let mut labels = labels(&net, candidates, options.tolerance, size);
-        for round in 0..=ROUNDS {
+        let mut finest = 0;
+        // The last two rounds are for triangles alone.
+        for round in 0..ROUNDS + 2 {
             if round == ROUNDS {
                 labels.of.iter_mut().for_each(|label| *label = FREE);
             }
@@ -113,32 +76,35 @@ impl Solid {
             }
             let chains = chains(&net, &groups, &labels, options.cell);
             let placed = place(&net, &groups, &labels, &chains, &options);
-            let made = faces(&net, &groups, &labels, &chains, &placed, options.tolerance);
-            if std::env::var("SDEBUG").is_ok() { // DEBUG
-                let free: Vec<usize> = (0..labels.of.len()).filter(|k| labels.of[*k] == FREE).collect(); // DEBUG
-                eprintln!("round {round}: free {} of {}, groups {}, failed vertices {}, failed triangles {}", free.len(), labels.of.len(), groups.count(), placed.failed.len(), made.failed.len()); // DEBUG
-                for k in free.iter().step_by(free.len() / 12 + 1) { eprintln!("   {:?}", net.ends.ends[*k]); } // DEBUG
-                for v in placed.failed.iter().take(8) { eprintln!("   failed {:?}", net.place(*v)); } // DEBUG
-                for v in made.failed.iter().take(4) { eprintln!("   failed face {:?} {:?}", net.place(net.mesh.triangles[*v as usize][0]), labels.all.get(labels.of[net.end_of(*v as usize) as usize] as usize)); } // DEBUG
-            } // DEBUG
+            let made = faces(&net, &groups, &labels, &chains, &placed, options);
             let given_up = give_up(&net, &groups, &mut labels, &placed, &made);
-            if given_up == 0 || round == ROUNDS {
-                return Ok(Self::of(&net, &groups, &labels, &chains, placed, made, options));
+            if given_up > 0 && round < ROUNDS {
+                continue;
             }
+            if finest < FINEST
+                && round < ROUNDS
+                && let Some((mesh, of_triangle)) = finer(&net, &labels, 0.25 * options.gap)
+            {
+                finest += 1;
+                let mut ends = net.ends.into_owned();
+                ends.of_triangle = of_triangle;
+                net = Net::new(Cow::Owned(mesh), Cow::Owned(ends))?;
+                continue;
+            }
+            let open = open_edges(&placed, &made);
+            if open == 0 {
+                return Ok(Self::of(&net, &groups, &labels, placed, made));
+            }
+            if labels.of.iter().all(|label| *label == FREE) {
+                return Err(SolidError::Unclosed { edges: open });
+            }
+            labels.of.iter_mut().for_each(|label| *label = FREE);
         }
         Err(SolidError::Open)
     }
 
-    fn of(
-        net: &Net,
-        groups: &Groups,
-        labels: &Labels,
-        chains: &Chains,
-        placed: Placed,
-        made: Faces,
-        options: SolidOptions,
-    ) -> Self {
-        let summary = summary(net, groups, labels, chains, &placed, &made, options);
+    fn of(net: &Net, groups: &Groups, labels: &Labels, placed: Placed, made: Faces) -> Self {
+        let summary = summary(net, groups, labels, &placed, &made);
         Self {
             bodies: shells(net, groups, &made.of_group),
             vertices: placed.vertices,
@@ -147,6 +113,15 @@ impl Solid {
             summary,
         }
     }
+}
+
+/// How many edges are not passed once each way.
+fn open_edges(placed: &Placed, made: &Faces) -> usize {
+    let mut uses = vec![[0_usize; 2]; placed.edges.len()];
+    for (edge, forward) in made.all.iter().flat_map(|face| face.loops.iter().flatten()) {
+        uses[*edge as usize][usize::from(*forward)] += 1;
+    }
+    uses.iter().filter(|uses| !matches!(uses, [0, 0] | [1, 1])).count()
 }
 
 /// The diagonal of the box of a mesh.
@@ -165,7 +140,11 @@ fn give_up(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, mad
         wrong[*vertex as usize] = true;
     }
     // Triangles that lost their area where their corners were moved onto surfaces: the mesh has it.
-    for triangle in made.failed.iter().filter(|t| groups.is_free(groups.of[**t as usize] as usize)) {
+    for triangle in made
+        .failed
+        .iter()
+        .filter(|t| groups.is_free(groups.of[**t as usize] as usize))
+    {
         for vertex in net.mesh.triangles[*triangle as usize] {
             wrong[vertex as usize] = true;
         }

@@ -1,9 +1,9 @@
 //! STEP files (ISO 10303-21) of solids: application protocol 214, advanced boundary representations, in millimetres.
 
 use crate::edges::{Curve, Edge};
-use crate::elliptic::EllipticSheet;
-use crate::solid::{Face, Solid};
-use crate::surface::Surface;
+use crate::parts::Face;
+use crate::solid::Solid;
+use crate::surface::{EllipticSheet, Surface};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -50,8 +50,12 @@ pub fn write_step(solid: &Solid, header: &StepHeader, out: &mut dyn Write) -> io
     let product = file.add(&format!("PRODUCT('{name}','{name}','',(#{of_product}))"))?;
     file.add(&format!("PRODUCT_RELATED_PRODUCT_CATEGORY('part','',(#{product}))"))?;
     let formation = file.add(&format!("PRODUCT_DEFINITION_FORMATION('','',#{product})"))?;
-    let of_definition = file.add(&format!("PRODUCT_DEFINITION_CONTEXT('part definition',#{context},'design')"))?;
-    let definition = file.add(&format!("PRODUCT_DEFINITION('design','',#{formation},#{of_definition})"))?;
+    let of_definition = file.add(&format!(
+        "PRODUCT_DEFINITION_CONTEXT('part definition',#{context},'design')"
+    ))?;
+    let definition = file.add(&format!(
+        "PRODUCT_DEFINITION('design','',#{formation},#{of_definition})"
+    ))?;
     let shape = file.add(&format!("PRODUCT_DEFINITION_SHAPE('','',#{definition})"))?;
     let length = file.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))")?;
     let angle = file.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")?;
@@ -80,7 +84,9 @@ pub fn write_step(solid: &Solid, header: &StepHeader, out: &mut dyn Write) -> io
         items.push(file.add(&format!("BREP_WITH_VOIDS('{name}',#{outer},{hollows})"))?);
     }
     let items = list(&items);
-    let whole = file.add(&format!("ADVANCED_BREP_SHAPE_REPRESENTATION('{name}',{items},#{units})"))?;
+    let whole = file.add(&format!(
+        "ADVANCED_BREP_SHAPE_REPRESENTATION('{name}',{items},#{units})"
+    ))?;
     file.add(&format!("SHAPE_DEFINITION_REPRESENTATION(#{shape},#{whole})"))?;
     writeln!(out, "ENDSEC;\nEND-ISO-10303-21;")
 }
@@ -161,7 +167,9 @@ impl Entities<'_> {
         for (k, own) in face.loops.iter().enumerate() {
             let mut uses = Vec::with_capacity(own.len());
             for (number, forward) in own {
-                let Some(edge) = &solid.edges[*number as usize] else { continue };
+                let Some(edge) = &solid.edges[*number as usize] else {
+                    continue;
+                };
                 let edge = self.edge(*number, edge)?;
                 let way = if *forward { ".T." } else { ".F." };
                 uses.push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},{way})"))?);
@@ -212,30 +220,30 @@ impl Entities<'_> {
         }
     }
 
-    /// A ruled sheet: cubic across, a little larger than its face.
+    /// A curve across the sheet, a little longer than its face, moved along the rulings.
     fn sheet(&mut self, sheet: &EllipticSheet, [angles, heights]: [[f64; 2]; 2]) -> io::Result<usize> {
         let room = 0.01 * (angles[1] - angles[0]);
-        let tall = 0.01 * (heights[1] - heights[0]);
-        let [low, high] = [heights[0] - tall, heights[1] + tall];
+        let low = sheet.axes[2] * heights[0];
         let knots = sheet.knots([angles[0] - room, angles[1] + room]);
-        let mut control = vec![sheet.point(knots[0], 0.0)];
+        let mut points = vec![self.point(sheet.point(knots[0], 0.0) + low)?];
         for pair in knots.windows(2) {
             let third = (pair[1] - pair[0]) / 3.0;
-            control.push(sheet.point(pair[0], 0.0) + sheet.speed(pair[0]) * third);
-            control.push(sheet.point(pair[1], 0.0) - sheet.speed(pair[1]) * third);
+            points.push(self.point(sheet.point(pair[0], 0.0) + sheet.speed(pair[0]) * third + low)?);
+            points.push(self.point(sheet.point(pair[1], 0.0) - sheet.speed(pair[1]) * third + low)?);
         }
-        control.push(sheet.point(knots[knots.len() - 1], 0.0));
-        let mut points = Vec::with_capacity(control.len());
-        for p in control {
-            let ends = [self.point(p + sheet.axes[2] * low)?, self.point(p + sheet.axes[2] * high)?];
-            points.push(list(&ends));
-        }
-        let (count, points) = (multiplicities(knots.len()), points.join(","));
+        points.push(self.point(sheet.point(knots[knots.len() - 1], 0.0) + low)?);
+        let curve = self.spline(&points, &knots)?;
+        let along = self.direction(sheet.axes[2])?;
+        let vector = self.add(&format!("VECTOR('',#{along},1.)"))?;
+        self.add(&format!("SURFACE_OF_LINEAR_EXTRUSION('',#{curve},#{vector})"))
+    }
+
+    /// A cubic spline with double knots.
+    fn spline(&mut self, points: &[usize], knots: &[f64]) -> io::Result<usize> {
+        let (points, count) = (list(points), multiplicities(knots.len()));
+        let knots = reals(knots.iter().copied());
         self.add(&format!(
-            "B_SPLINE_SURFACE_WITH_KNOTS('',3,1,({points}),.UNSPECIFIED.,.F.,.F.,.F.,{count},(2,2),{},({},{}),.UNSPECIFIED.)",
-            reals(knots.into_iter()),
-            real(low),
-            real(high)
+            "B_SPLINE_CURVE_WITH_KNOTS('',3,{points},.UNSPECIFIED.,.F.,.F.,{count},{knots},.UNSPECIFIED.)"
         ))
     }
 
@@ -259,7 +267,8 @@ impl Entities<'_> {
         let curve = match &edge.curve {
             Curve::Line => {
                 let way = edge.ends[1] - edge.ends[0];
-                let start = self.point(edge.ends[0])?;
+                // Not at an end, which may be the tip of a cone.
+                let start = self.point((edge.ends[0] + edge.ends[1]) * 0.5)?;
                 let along = self.direction(way.try_normalize(0.0).unwrap_or(Vector3::z()))?;
                 let vector = self.add(&format!("VECTOR('',#{along},1.)"))?;
                 self.add(&format!("LINE('',#{start},#{vector})"))?
@@ -289,11 +298,7 @@ impl Entities<'_> {
                 for p in points {
                     numbers.push(self.point(*p)?);
                 }
-                let (points, count) = (list(&numbers), multiplicities(knots.len()));
-                let knots = reals(knots.iter().copied());
-                self.add(&format!(
-                    "B_SPLINE_CURVE_WITH_KNOTS('',3,{points},.UNSPECIFIED.,.F.,.F.,{count},{knots},.UNSPECIFIED.)"
-                ))?
+                self.spline(&numbers, knots)?
             }
         };
         let edge = self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)"))?;

@@ -1,10 +1,9 @@
 //! What a solid is made of, and how near it is to the interval ends that it was made of.
 
-use crate::edges::{Chains, Placed};
+use crate::edges::Placed;
 use crate::faces::Faces;
 use crate::label::{FREE, Groups, Labels};
 use crate::net::Net;
-use crate::solid::SolidOptions;
 use std::collections::BTreeMap;
 
 /// What a solid is made of.
@@ -33,22 +32,15 @@ impl Summary {
     }
 }
 
-pub(crate) fn summary(
-    net: &Net,
-    groups: &Groups,
-    labels: &Labels,
-    chains: &Chains,
-    placed: &Placed,
-    made: &Faces,
-    options: SolidOptions,
-) -> Summary {
-    let _ = (chains, options);
+pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Placed, made: &Faces) -> Summary {
     let mut summary = Summary::default();
     for face in &made.all {
         let kind = if face.is_facet { "facet" } else { face.surface.kind() };
         *summary.faces.entry(kind).or_default() += 1;
         for (edge, _) in face.loops.iter().flatten() {
-            let Some(edge) = &placed.edges[*edge as usize] else { continue };
+            let Some(edge) = &placed.edges[*edge as usize] else {
+                continue;
+            };
             for k in 0..=8 {
                 summary.gap = summary.gap.max(face.surface.off(edge.at(f64::from(k) / 8.0)));
             }
@@ -65,7 +57,9 @@ pub(crate) fn summary(
             *summary.areas.entry(kind).or_default() += 0.5 * net.area(*triangle as usize).norm();
             let number = net.end_of(*triangle as usize);
             let end = &net.ends.ends[number as usize];
-            let Some(face) = face.filter(|_| end.normal.is_some()) else { continue };
+            let Some(face) = face.filter(|_| end.normal.is_some()) else {
+                continue;
+            };
             let off = face.surface.off(end.place.into());
             if face.is_facet {
                 let least = nearest.entry(number).or_insert(f64::INFINITY);

@@ -7,4 +7,5 @@ mod railing;
 mod router_bit;
 mod same_part;
 mod shared_data;
+mod solids;
 mod tidy;

@@ -18,8 +18,8 @@
 //! on its curve. (Others flip the curves of such a face; this way a cell does not depend on its neighbours.)
 
 use super::TriDexels;
-use super::ends::SurfaceEnds;
 use super::cell::{CELLS, EDGES};
+use super::ends::SurfaceEnds;
 use super::lattice::{Hit, Lattice};
 use super::plane::Planes;
 use crate::mesh::{Mesh, MeshError, check_vertices};
@@ -108,7 +108,10 @@ fn faces_of(lattice: &Lattice, most: usize, tell: bool) -> Result<(Mesh, Vec<Lat
         edges.extend(made);
         for (ring, face) in rest {
             let fan = face.fan(lattice, &mesh, ring, &mut extra);
-            around.extend(std::iter::repeat_n((face.axis, face.at), if tell { fan.len() } else { 0 }));
+            around.extend(std::iter::repeat_n(
+                (face.axis, face.at),
+                if tell { fan.len() } else { 0 },
+            ));
             fans.extend(fan);
         }
     }

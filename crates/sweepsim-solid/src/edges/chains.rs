@@ -84,10 +84,16 @@ fn tips(net: &Net, groups: &Groups, labels: &Labels, leaving: &[u8], cell: f64) 
             continue;
         };
         let apex = Vector3::from(apex);
-        let corners = groups.triangles(face).iter().flat_map(|t| net.mesh.triangles[*t as usize]);
+        let corners = groups
+            .triangles(face)
+            .iter()
+            .flat_map(|t| net.mesh.triangles[*t as usize]);
         let far = |vertex: u32| (net.place(vertex) - apex).norm();
         let near = corners.filter(|v| leaving[*v as usize] > 0 && far(*v) < 2.0 * cell);
-        tips.extend(near.min_by(|a, b| far(*a).total_cmp(&far(*b))).map(|vertex| (vertex, apex)));
+        tips.extend(
+            near.min_by(|a, b| far(*a).total_cmp(&far(*b)))
+                .map(|vertex| (vertex, apex)),
+        );
     }
     tips.sort_by_key(|(vertex, _)| *vertex);
     tips.dedup_by_key(|(vertex, _)| *vertex);

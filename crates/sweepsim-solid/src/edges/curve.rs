@@ -161,7 +161,9 @@ mod tests {
             ends: [points[0], points[4]],
             curve: hermite(&points, &tangents),
         };
-        let Curve::Spline { knots, .. } = &edge.curve else { panic!() };
+        let Curve::Spline { knots, .. } = &edge.curve else {
+            panic!()
+        };
         let length = knots[4];
         assert!((length - 2.7).abs() < 1e-2);
         for (knot, point) in knots.iter().zip(&points) {

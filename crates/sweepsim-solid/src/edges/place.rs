@@ -5,7 +5,7 @@ use super::curve::{Curve, Edge};
 use super::trace::Course;
 use crate::label::{FREE, Groups, Labels};
 use crate::net::Net;
-use crate::solid::SolidOptions;
+use crate::parts::SolidOptions;
 use crate::solve::{Condition, meet, sine};
 use crate::surface::Surface;
 use nalgebra::Vector3;
@@ -15,6 +15,8 @@ use std::collections::BTreeMap;
 const GUIDES: usize = 24;
 /// How far points may be moved onto surfaces, in cells.
 const FAR: f64 = 2.0;
+/// Edges of triangles shorter than this, in cells, are none.
+const LEAST: f64 = 1e-2;
 /// Corners with a shorter chain between them may be one, in cells.
 const SHORT: f64 = 1.5;
 /// Surfaces that meet at larger angles than this, as a sine, cross there, although they may touch nearby.
@@ -49,7 +51,7 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
     let (nodes, mut failed) = nodes(net, groups, labels, chains, &between, scale);
     let mut numbers: BTreeMap<u32, u32> = nodes.keys().enumerate().map(|(k, v)| (*v, k as u32)).collect();
     let mut vertices: Vec<Vector3<f64>> = nodes.values().copied().collect();
-    collapse(net, chains, &mut numbers, &mut vertices, scale);
+    collapse(net, groups, chains, &mut numbers, &mut vertices, scale);
     let mut edges = Vec::with_capacity(chains.all.len());
     for (chain, between) in chains.all.iter().zip(&between) {
         let own = chain.ends().map(|vertex| numbers[&vertex]);
@@ -66,7 +68,6 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
             }),
             Between::Surfaces(surfaces, touch) => course(net, chain, *surfaces, *touch, own, ends, scale).edge(),
         };
-        if edge.is_none() && std::env::var("SDEBUG").is_ok() { if let Between::Surfaces(s, t) = between { eprintln!("no edge {:?} {:?} touch {t} ends {ends:?} mesh {:?} {:?} n {} guides {:?}", s[0], s[1], net.place(chain.vertices[0]), net.place(chain.ends()[1]), chain.vertices.len(), course(net, chain, *s, *t, own, ends, scale).guides.iter().take(3).collect::<Vec<_>>()); } } // DEBUG
         if edge.is_none() {
             failed.extend(&chain.vertices);
         }
@@ -82,7 +83,11 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
 /// How far a chain reaches from its start.
 fn extent(net: &Net, chain: &Chain) -> f64 {
     let start = net.place(chain.vertices[0]);
-    chain.vertices.iter().map(|v| (net.place(*v) - start).norm()).fold(0.0, f64::max)
+    chain
+        .vertices
+        .iter()
+        .map(|v| (net.place(*v) - start).norm())
+        .fold(0.0, f64::max)
 }
 
 /// A few vertices of a chain, without its ends unless it has no others.
@@ -104,7 +109,10 @@ fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, sc
     }
     let pair = [surface(a), surface(b)];
     let looked_at = some(chain, 9);
-    let touching = looked_at.iter().filter(|vertex| touches(net.place(**vertex), pair, scale)).count();
+    let touching = looked_at
+        .iter()
+        .filter(|vertex| touches(net.place(**vertex), pair, scale))
+        .count();
     Between::Surfaces(pair, 2 * touching > looked_at.len())
 }
 
@@ -112,13 +120,24 @@ fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, sc
 fn touches(p: Vector3<f64>, [a, b]: [&Surface; 2], scale: &SolidOptions) -> bool {
     let conditions = [Condition::On(a), Condition::On(b), Condition::Touch(a, b)];
     let crossing = meet(p, &conditions[..2], scale.cell).filter(|(_, off)| *off <= 0.1 * scale.tolerance);
-    if crossing.and_then(|(q, _)| sine(a, b, q)).is_some_and(|sine| sine > CROSSING) {
+    if crossing
+        .and_then(|(q, _)| sine(a, b, q))
+        .is_some_and(|sine| sine > CROSSING)
+    {
         return false;
     }
     meet(p, &conditions, scale.cell).is_some_and(|(q, off)| {
         let parallel = sine(a, b, q).is_some_and(|sine| sine < 1e-3);
-        parallel && off <= scale.tolerance && (q - p).norm() <= FAR * scale.cell
+        parallel && off <= scale.gap && (q - p).norm() <= FAR * scale.cell
     })
+}
+
+/// How far a point may be from the surfaces that meet there.
+fn limit(conditions: &[Condition], scale: &SolidOptions) -> f64 {
+    let touch = conditions
+        .iter()
+        .any(|condition| matches!(condition, Condition::Touch(..)));
+    if touch { scale.gap } else { scale.tolerance }
 }
 
 /// The conditions of a corner.
@@ -147,7 +166,9 @@ fn nodes(
                 let label = groups.label[face as usize];
                 if label != FREE && !corner.labels.contains(&label) {
                     corner.labels.push(label);
-                    corner.conditions.push(Condition::On(&labels.all[label as usize].surface));
+                    corner
+                        .conditions
+                        .push(Condition::On(&labels.all[label as usize].surface));
                 }
             }
             if let Between::Surfaces([a, b], touch) = *between {
@@ -165,7 +186,7 @@ fn nodes(
         let found = match tip {
             Ok(tip) => Some(chains.tips[tip].1),
             Err(_) => meet(start, &corner.conditions, scale.cell)
-                .filter(|(p, off)| *off <= scale.tolerance && near(*p, *vertex))
+                .filter(|(p, off)| *off <= limit(&corner.conditions, scale) && near(*p, *vertex))
                 .map(|(p, _)| p),
         };
         (corner.place, corner.found) = (found.unwrap_or(start), found.is_some());
@@ -177,14 +198,17 @@ fn nodes(
         let (Some(one), Some(two)) = (corners.get(&a).filter(|_| short), corners.get(&b)) else {
             continue;
         };
-        let all = one.labels.iter().chain(two.labels.iter().filter(|label| !one.labels.contains(label)));
+        let all = one
+            .labels
+            .iter()
+            .chain(two.labels.iter().filter(|label| !one.labels.contains(label)));
         if all.count() == one.labels.len().max(two.labels.len()) {
             continue;
         }
         let conditions: Vec<Condition> = one.conditions.iter().chain(&two.conditions).copied().collect();
         let start = (net.place(a) + net.place(b)) * 0.5;
         let found = meet(start, &conditions, scale.cell)
-            .filter(|(p, off)| *off <= scale.tolerance && near(*p, a) && near(*p, b));
+            .filter(|(p, off)| *off <= limit(&conditions, scale) && near(*p, a) && near(*p, b));
         if let Some((place, _)) = found {
             for vertex in [a, b] {
                 if let Some(corner) = corners.get_mut(&vertex) {
@@ -193,14 +217,24 @@ fn nodes(
             }
         }
     }
-    let failed = corners.iter().filter(|(_, corner)| !corner.found).map(|(vertex, _)| *vertex);
+    let failed = corners
+        .iter()
+        .filter(|(_, corner)| !corner.found)
+        .map(|(vertex, _)| *vertex);
     let failed = failed.collect();
-    (corners.into_iter().map(|(vertex, corner)| (vertex, corner.place)).collect(), failed)
+    (
+        corners
+            .into_iter()
+            .map(|(vertex, corner)| (vertex, corner.place))
+            .collect(),
+        failed,
+    )
 }
 
 /// Makes one vertex of those that fell together at the ends of a short chain.
 fn collapse(
     net: &Net,
+    groups: &Groups,
     chains: &Chains,
     numbers: &mut BTreeMap<u32, u32>,
     vertices: &mut [Vector3<f64>],
@@ -213,12 +247,30 @@ fn collapse(
         }
         vertex
     };
+    // Vertices on surfaces stay where they are.
+    let mut held = vec![false; vertices.len()];
     for chain in &chains.all {
-        let ends = chain.ends().map(|vertex| numbers[&vertex]);
-        let [a, b] = ends.map(|vertex| find(&root, vertex));
+        let on = chain.faces.iter().any(|face| !groups.is_free(*face as usize));
+        for vertex in chain.ends() {
+            held[numbers[&vertex] as usize] |= on;
+        }
+    }
+    for chain in &chains.all {
+        let [a, b] = chain.ends().map(|vertex| find(&root, numbers[&vertex]));
         let apart = (vertices[a as usize] - vertices[b as usize]).norm();
-        if a != b && apart <= 4.0 * scale.tolerance && extent(net, chain) < FAR * scale.cell {
-            root[a.max(b) as usize] = a.min(b);
+        let free = chain.faces.iter().any(|face| groups.is_free(*face as usize));
+        let least = if free {
+            (LEAST * scale.cell).max(4.0 * scale.tolerance)
+        } else {
+            4.0 * scale.tolerance
+        };
+        if a != b && apart <= least && extent(net, chain) < FAR * scale.cell {
+            let (kept, gone) = match [held[a as usize], held[b as usize]] {
+                [true, false] => (a, b),
+                [false, true] => (b, a),
+                _ => (a.min(b), a.max(b)),
+            };
+            root[gone as usize] = kept;
         }
     }
     for number in numbers.values_mut() {
@@ -244,10 +296,17 @@ fn course<'a>(
     let guide = |vertex: u32| {
         let start = net.place(vertex);
         let (p, off) = meet(start, &conditions, scale.cell)?;
-        (off <= scale.tolerance && (p - start).norm() <= FAR * scale.cell).then_some(p)
+        (off <= limit(&conditions, scale) && (p - start).norm() <= FAR * scale.cell).then_some(p)
     };
-    let inner = if chain.vertices.len() > 2 { some(chain, GUIDES) } else { Vec::new() };
-    let length = chain.vertices.windows(2).map(|pair| (net.place(pair[1]) - net.place(pair[0])).norm());
+    let inner = if chain.vertices.len() > 2 {
+        some(chain, GUIDES)
+    } else {
+        Vec::new()
+    };
+    let length = chain
+        .vertices
+        .windows(2)
+        .map(|pair| (net.place(pair[1]) - net.place(pair[0])).norm());
     // An end that three surfaces only nearly have in common is as near to the edge as to them.
     let missed = ends.iter().flat_map(|p| [a.off(*p), b.off(*p)]).fold(0.0, f64::max);
     Course {
@@ -258,6 +317,6 @@ fn course<'a>(
         guides: inner.into_iter().filter_map(guide).collect(),
         length: length.sum(),
         cell: scale.cell,
-        tolerance: (0.1 * scale.tolerance + missed).max(if touch { scale.tolerance } else { 0.0 }),
+        tolerance: (0.1 * scale.tolerance + missed).max(if touch { scale.gap } else { 0.0 }),
     }
 }

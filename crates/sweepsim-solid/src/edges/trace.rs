@@ -165,7 +165,13 @@ impl<'a> Course<'a> {
             }
             (cylinder, A::Cylinder { .. }) => {
                 let [from, b, c] = self.three()?;
-                ((b - from).cross(&(c - from)).try_normalize(1e-9 * self.cell * self.cell)?, from, cylinder)
+                (
+                    (b - from)
+                        .cross(&(c - from))
+                        .try_normalize(1e-9 * self.cell * self.cell)?,
+                    from,
+                    cylinder,
+                )
             }
             _ => return None,
         };
@@ -214,7 +220,9 @@ impl<'a> Course<'a> {
             return None;
         }
         let curve = hermite(points, tangents);
-        let Curve::Spline { knots, .. } = &curve else { return None };
+        let Curve::Spline { knots, .. } = &curve else {
+            return None;
+        };
         let last = *knots.last()?;
         let middles: Vec<f64> = knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) / last).collect();
         let edge = self.with(curve);
@@ -248,7 +256,11 @@ impl<'a> Course<'a> {
         let conditions = self.conditions();
         let [from, to] = self.ends;
         let most = (4.0 * self.length / step) as usize + 20;
-        let ahead = self.guides.iter().chain([&to]).find(|guide| (*guide - from).norm() > 0.75 * self.cell);
+        let ahead = self
+            .guides
+            .iter()
+            .chain([&to])
+            .find(|guide| (*guide - from).norm() > 0.75 * self.cell);
         let ahead = ahead.unwrap_or(&to) - from;
         let mut way = self.way_at(from, ahead)?;
         let (mut points, mut tangents) = (vec![from], vec![way]);

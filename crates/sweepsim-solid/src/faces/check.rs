@@ -1,8 +1,8 @@
 //! Loops in the parameters of a surface: simple, and one around the others.
 
-use super::Use;
 use crate::chart::{Chart, wrapped};
 use crate::edges::Placed;
+use crate::parts::Use;
 use std::f64::consts::PI;
 
 /// The most points of a face whose loops are looked at for crossings.
@@ -38,7 +38,6 @@ pub(super) fn outer_first(
     let sign = if outward { 1.0 } else { -1.0 };
     let areas: Vec<f64> = polygons.iter().map(|polygon| sign * area(polygon)).collect();
     let outer: Vec<usize> = (0..areas.len()).filter(|k| areas[*k] > 0.0).collect();
-    if std::env::var("SDEBUG").is_ok() { if outer.len() != 1 { eprintln!("areas {areas:?} {:?}", polygons.iter().map(|p| p.iter().take(40).collect::<Vec<_>>()).collect::<Vec<_>>()); } } // DEBUG
     let [outer] = outer[..] else { return None };
     let scale = chart.scale();
     let scaled: Vec<Vec<[f64; 2]>> = polygons
@@ -46,7 +45,6 @@ pub(super) fn outer_first(
         .map(|polygon| polygon.iter().map(|p| [p[0] * scale[0], p[1] * scale[1]]).collect())
         .collect();
     if crosses(&scaled) {
-        if std::env::var("SDEBUG").is_ok() { eprintln!("crossing {areas:?} {:?}", polygons.iter().map(|p| p.iter().take(40).collect::<Vec<_>>()).collect::<Vec<_>>()); } // DEBUG
         return None;
     }
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -63,9 +61,11 @@ pub(super) fn outer_first(
 }
 
 fn spread(polygon: &[[f64; 2]], k: usize) -> f64 {
-    let range = polygon.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
-        [low.min(p[k]), high.max(p[k])]
-    });
+    let range = polygon
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
+            [low.min(p[k]), high.max(p[k])]
+        });
     range[1] - range[0]
 }
 
@@ -104,14 +104,17 @@ fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<[f64; 2]>>
     }
     let (first, last) = (polygon.first()?, polygon.last()?);
     // At the tip of a cone, angles end and begin again.
-    let closes = (0..2).all(|k| points.last().is_some_and(|p| p[k].is_none()) || (first[k] - last[k]).abs() < PI || !periodic[k]);
+    let closes = (0..2)
+        .all(|k| points.last().is_some_and(|p| p[k].is_none()) || (first[k] - last[k]).abs() < PI || !periodic[k]);
     closes.then_some(polygon)
 }
 
 fn area(polygon: &[[f64; 2]]) -> f64 {
     let [x, y] = polygon[0];
     let pairs = (1..polygon.len()).map(|k| (polygon[k - 1], polygon[k]));
-    0.5 * pairs.map(|(a, b)| (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y)).sum::<f64>()
+    0.5 * pairs
+        .map(|(a, b)| (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y))
+        .sum::<f64>()
 }
 
 /// Whether any two sides of the polygons cross.
@@ -132,7 +135,8 @@ fn crosses(polygons: &[Vec<[f64; 2]>]) -> bool {
             if low(two) > high(one) {
                 break;
             }
-            let outside = one.0[1].max(one.1[1]) < two.0[1].min(two.1[1]) || two.0[1].max(two.1[1]) < one.0[1].min(one.1[1]);
+            let outside =
+                one.0[1].max(one.1[1]) < two.0[1].min(two.1[1]) || two.0[1].max(two.1[1]) < one.0[1].min(one.1[1]);
             if !outside && cross(*one, *two) {
                 return true;
             }

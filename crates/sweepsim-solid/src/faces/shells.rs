@@ -2,7 +2,7 @@
 
 use crate::label::Groups;
 use crate::net::Net;
-use crate::solid::Body;
+use crate::parts::Body;
 use nalgebra::Vector3;
 
 /// The bodies of a solid: each an outer shell, with those of its hollows.
@@ -36,7 +36,9 @@ pub(crate) fn shells(net: &Net, groups: &Groups, of_group: &[Option<u32>]) -> Ve
             faces[shell_of[*triangle as usize] as usize].push(face);
         }
     }
-    let outer: Vec<usize> = (0..volumes.len()).filter(|k| volumes[*k].0 > 0.0 && faces[*k].len() > 1).collect();
+    let outer: Vec<usize> = (0..volumes.len())
+        .filter(|k| volumes[*k].0 > 0.0 && faces[*k].len() > 1)
+        .collect();
     let mut bodies: Vec<Body> = outer
         .iter()
         .map(|shell| Body {

@@ -1,7 +1,9 @@
 //! Connected parts of the mesh with one label.
 
-use super::FREE;
 use crate::net::Net;
+
+/// No surface is known.
+pub(crate) const FREE: u32 = u32::MAX;
 
 /// The faces that labels make.
 pub(crate) struct Groups {

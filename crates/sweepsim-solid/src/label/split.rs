@@ -1,7 +1,8 @@
 //! Faces that go round are divided: no face of the result has a seam or a pole.
 
-use super::{Groups, Label, Labels, group};
-use crate::chart::{Chart, across, wrapped};
+use super::ends::Labels;
+use super::groups::{Groups, group};
+use crate::chart::{Chart, Label, across, wrapped};
 use crate::net::Net;
 use crate::surface::Surface;
 use nalgebra::Vector3;
@@ -64,7 +65,9 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
         let Some(pole) = pole(&normals) else {
             // Through the middle of the face, where it meets no corner.
             let middle: Vector3<f64> = normals.iter().sum();
-            let axis = middle.try_normalize(1e-3 * normals.len() as f64).unwrap_or(Vector3::z());
+            let axis = middle
+                .try_normalize(1e-3 * normals.len() as f64)
+                .unwrap_or(Vector3::z());
             chart.axes = [across(axis), axis.cross(&across(axis)), axis];
             let angle = free_angle(net, groups, corners, face, &chart);
             return cut(net, labels, groups, face, chart.through_axis(angle), label);
@@ -81,7 +84,10 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
         // Dividers that it had, it has still.
         let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, *plane)).collect();
         for ((a, b), plane) in old {
-            if let Some(other) = [(a, b), (b, a)].into_iter().find_map(|(x, y)| (x == number).then_some(y)) {
+            if let Some(other) = [(a, b), (b, a)]
+                .into_iter()
+                .find_map(|(x, y)| (x == number).then_some(y))
+            {
                 labels.dividers.insert((other.min(own), other.max(own)), plane);
             }
         }
@@ -119,7 +125,10 @@ fn cut(net: &Net, labels: &mut Labels, groups: &Groups, face: usize, plane: Surf
     let number = groups.label[face];
     let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, *plane)).collect();
     for ((a, b), before) in old {
-        if let Some(other) = [(a, b), (b, a)].into_iter().find_map(|(x, y)| (x == number).then_some(y)) {
+        if let Some(other) = [(a, b), (b, a)]
+            .into_iter()
+            .find_map(|(x, y)| (x == number).then_some(y))
+        {
             for own in [first, first + 1] {
                 labels.dividers.insert((other.min(own), other.max(own)), before);
             }

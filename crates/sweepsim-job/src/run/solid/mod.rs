@@ -14,6 +14,8 @@ use sweepsim_dexel::{Source, SurfaceEnd, TriDexels};
 use sweepsim_formats::Report;
 use sweepsim_solid::{Solid, SolidOptions, StepHeader, Summary, Surface, write_step};
 
+/// How far surfaces that touch may be apart, in millimetres: programs round to 0.001 mm, or to 0.0001 in.
+const ROUNDED: f64 = 2e-3;
 /// Kinds of faces with one of them and several, in the order in which they are counted.
 const KINDS: [(&str, &str, &str); 7] = [
     ("plane", "plane", "planes"),
@@ -58,13 +60,15 @@ fn of(solid: &TriDexels, session: Session) -> Result<Solid, JobError> {
                 let Some(path) = job.paths.get(path as usize) else {
                     return Vec::new();
                 };
-                tools.get(&path.tool).map_or(Vec::new(), |tool| left_by(tool, &path.path, segment as usize))
+                tools
+                    .get(&path.tool)
+                    .map_or(Vec::new(), |tool| left_by(tool, &path.path, segment as usize))
             }
         }
     };
     let cells = solid.cells();
     let cell = (0..3).map(|k| (solid.max()[k] - solid.min()[k]) / cells[k] as f64);
-    let options = SolidOptions::new(job.tolerance, cell.fold(0.0, f64::max));
+    let options = SolidOptions::new(job.tolerance, cell.fold(0.0, f64::max)).with_gap(ROUNDED);
     Solid::new(&mesh, &ends, &candidates, options).map_err(|error| failed(&error))
 }
 
@@ -75,14 +79,22 @@ fn in_words(solid: &Solid) -> String {
         .iter()
         .filter_map(|(kind, one, more)| {
             let count = *summary.faces.get(kind)?;
-            Some(format!("{} {}", numbered(count as u64), if count == 1 { one } else { more }))
+            Some(format!(
+                "{} {}",
+                numbered(count as u64),
+                if count == 1 { one } else { more }
+            ))
         })
         .collect();
     let bodies = match solid.bodies.len() {
         1 => "one body".to_owned(),
         several => format!("{} bodies", numbered(several as u64)),
     };
-    format!("part.step, in millimetres: {bodies} of {}. {}", parts.join(", "), distances(summary))
+    format!(
+        "part.step, in millimetres: {bodies} of {}. {}",
+        parts.join(", "),
+        distances(summary)
+    )
 }
 
 fn distances(summary: &Summary) -> String {

@@ -13,7 +13,10 @@ use sweepsim_solid::{EllipticSheet, Surface};
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Piece {
     Line([f64; 2], [f64; 2]),
-    Arc { centre: [f64; 2], radius: f64 },
+    Arc {
+        centre: [f64; 2],
+        radius: f64,
+    },
     /// Where two pieces meet.
     Rim([f64; 2]),
 }
@@ -71,7 +74,8 @@ pub(super) fn left_by(tool: &[Piece], path: &Path, number: usize) -> Vec<Surface
     let (from, to, way) = (path.pose(number), path.pose(number + 1), path.way(number));
     let mut all = Vec::new();
     for pose in [from, to] {
-        tool.iter().for_each(|piece| all.extend(standing(*piece, pose.tip(), pose.axis())));
+        tool.iter()
+            .for_each(|piece| all.extend(standing(*piece, pose.tip(), pose.axis())));
     }
     let still = match way.turning {
         Turning::Rotary { from, to, .. } => from == to,
@@ -85,12 +89,14 @@ pub(super) fn left_by(tool: &[Piece], path: &Path, number: usize) -> Vec<Surface
     match way.course {
         TipCourse::Straight => {
             if let Some(ahead) = unit(sub(to.tip(), from.tip())) {
-                tool.iter().for_each(|piece| all.extend(straight(*piece, from.tip(), axis, ahead)));
+                tool.iter()
+                    .for_each(|piece| all.extend(straight(*piece, from.tip(), axis, ahead)));
             }
         }
         TipCourse::Arc(arc) => {
             let arc = arc.through(from.tip(), to.tip());
-            tool.iter().for_each(|piece| all.extend(round(*piece, from.tip(), axis, arc.centre(), arc.normal())));
+            tool.iter()
+                .for_each(|piece| all.extend(round(*piece, from.tip(), axis, arc.centre(), arc.normal())));
         }
     }
     all
@@ -183,7 +189,10 @@ fn round(piece: Piece, tip: [f64; 3], axis: [f64; 3], centre: [f64; 3], normal: 
                     let at = |r: f64| radius + side * r;
                     all.extend(revolved_line(point, axis, [at(r), z], [at(s), w]));
                 }
-                Piece::Arc { centre: [r, z], radius: tube } => {
+                Piece::Arc {
+                    centre: [r, z],
+                    radius: tube,
+                } => {
                     all.extend(torus(along(point, z, axis), axis, radius + side * r, tube));
                     all.push(plane(along(point, z - side * tube, axis), axis));
                 }
@@ -197,15 +206,26 @@ fn round(piece: Piece, tip: [f64; 3], axis: [f64; 3], centre: [f64; 3], normal: 
     }
     // Upright, or at any angle: a ball goes round, and a wall stays in its plane if the arc is in one through the axis.
     match piece {
-        Piece::Arc { centre: [r, z], radius: tube } if r.abs() < 1e-12 * tube => {
+        Piece::Arc {
+            centre: [r, z],
+            radius: tube,
+        } if r.abs() < 1e-12 * tube => {
             let off = sub(along(tip, z, axis), centre);
             let height = dot(off, normal);
             let arm = along(off, -height, normal);
             all.extend(torus(along(centre, height, normal), normal, dot(arm, arm).sqrt(), tube));
         }
-        Piece::Line([r, _], [s, _]) | Piece::Arc { centre: [r, _], radius: s } if cosine.abs() < SAME => {
+        Piece::Line([r, _], [s, _])
+        | Piece::Arc {
+            centre: [r, _],
+            radius: s,
+        } if cosine.abs() < SAME => {
             // The widest of the piece: of a side the radius, of a corner's torus its equator.
-            let wide = if matches!(piece, Piece::Line(..)) { r.max(s) } else { r + s };
+            let wide = if matches!(piece, Piece::Line(..)) {
+                r.max(s)
+            } else {
+                r + s
+            };
             all.extend([wide, -wide].map(|out| plane(along(tip, out, normal), normal)));
         }
         _ => {}

@@ -67,7 +67,9 @@ impl StockSurfaces {
         }
         let mut all = self.simple.clone();
         for mesh in &self.meshes {
-            let Some(near) = mesh.nearest_triangle(end.place) else { continue };
+            let Some(near) = mesh.nearest_triangle(end.place) else {
+                continue;
+            };
             let [a, b, c] = near.corners;
             all.extend(unit(cross(sub(b, a), sub(c, a))).map(|normal| plane(a, normal)));
         }

@@ -98,7 +98,11 @@ impl EllipticSheet {
                 high = t;
             }
             let next = t - value / slope(t);
-            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            let next = if next > low && next < high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
             if (next - t).abs() < 1e-15 {
                 break;
             }
@@ -161,7 +165,10 @@ mod tests {
                 })
                 .fold(f64::INFINITY, f64::min);
             let inside = (p - sheet.centre).dot(&normal) < 0.0;
-            assert!(!inside && (nearest - 0.8 - distance).abs() < 1e-6, "{k} {nearest} {distance}");
+            assert!(
+                !inside && (nearest - 0.8 - distance).abs() < 1e-6,
+                "{k} {nearest} {distance}"
+            );
             assert!(normal.dot(&way).abs() < 1e-12);
             tried += usize::from(distance.abs() > 0.01);
         }

@@ -1,6 +1,8 @@
 //! Surfaces that faces can be parts of.
 
-use crate::elliptic::EllipticSheet;
+mod elliptic;
+
+pub use elliptic::EllipticSheet;
 use nalgebra::Vector3;
 use sweepsim_dexel::AnalyticSurface;
 
