@@ -67,7 +67,7 @@ impl Solid {
             if round == ROUNDS {
                 labels.of.iter_mut().for_each(|label| *label = FREE);
             }
-            let groups = split(&net, &mut labels);
+            let groups = split(&net, &mut labels, options.cell);
             if groups.count() > MOST_FACES {
                 return Err(SolidError::TooManyFaces {
                     faces: groups.count(),

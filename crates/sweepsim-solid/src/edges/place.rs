@@ -15,6 +15,8 @@ use std::collections::BTreeMap;
 const GUIDES: usize = 24;
 /// How far points may be moved onto surfaces, in cells.
 const FAR: f64 = 2.0;
+/// Longer chains, in cells, do not fall together.
+const SPAN: f64 = 3.0;
 /// Edges of triangles shorter than this, in cells, are none.
 const LEAST: f64 = 1e-2;
 /// Corners with a shorter chain between them may be one, in cells.
@@ -55,7 +57,8 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
     let mut edges = Vec::with_capacity(chains.all.len());
     for (chain, between) in chains.all.iter().zip(&between) {
         let own = chain.ends().map(|vertex| numbers[&vertex]);
-        if own[0] == own[1] && extent(net, chain) < FAR * scale.cell {
+        let round = chain.ends()[0] == chain.ends()[1];
+        if own[0] == own[1] && !round && extent(net, chain) < SPAN * scale.cell {
             edges.push(None);
             continue;
         }
@@ -264,7 +267,7 @@ fn collapse(
         } else {
             4.0 * scale.tolerance
         };
-        if a != b && apart <= least && extent(net, chain) < FAR * scale.cell {
+        if a != b && apart <= least && extent(net, chain) < SPAN * scale.cell {
             let (kept, gone) = match [held[a as usize], held[b as usize]] {
                 [true, false] => (a, b),
                 [false, true] => (b, a),

@@ -233,8 +233,8 @@ impl<'a> Course<'a> {
         fits.then_some(edge)
     }
 
-    /// The direction of the curve at an end, away from it. Where the surfaces touch at the end only, their normals do not
-    /// tell, but those a little farther on.
+    /// The direction of the curve at an end, away from it. Where the surfaces touch at the end only, their normals do
+    /// not tell, but those a little farther on.
     fn way_at(&self, end: Vector3<f64>, ahead: Vector3<f64>) -> Option<Vector3<f64>> {
         let conditions = self.conditions();
         let way_at = |p: Vector3<f64>| {

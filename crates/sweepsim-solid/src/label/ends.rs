@@ -109,6 +109,11 @@ impl Labels {
     /// Whether an end is on the surface of a label, on its side.
     fn fits(&self, end: &SurfaceEnd, label: u32, tolerance: f64) -> bool {
         let label = &self.all[label as usize];
+        let place = end.place.into();
+        // The tip of a cone is on it, whatever its normal.
+        if label.surface.at(place).is_none() {
+            return label.surface.off(place) <= tolerance;
+        }
         on(end, &label.surface, tolerance).is_some_and(|(_, outward)| outward == label.outward)
     }
 

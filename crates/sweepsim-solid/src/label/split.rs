@@ -20,14 +20,14 @@ const TRIED: usize = 32;
 const FROM_POLE: f64 = 0.2;
 
 /// Divides faces until none goes round.
-pub(crate) fn split(net: &Net, labels: &mut Labels) -> Groups {
+pub(crate) fn split(net: &Net, labels: &mut Labels, cell: f64) -> Groups {
     for _ in 0..TIMES {
         let groups = group(net, &labels.of);
         let corners = corners(net, &groups);
         let mut divided = false;
         for face in 0..groups.count() {
             if !groups.is_free(face) {
-                divided |= divide(net, labels, &groups, &corners, face);
+                divided |= divide(net, labels, &groups, &corners, face, cell);
             }
         }
         if !divided {
@@ -50,7 +50,7 @@ fn corners(net: &Net, groups: &Groups) -> Vec<bool> {
 }
 
 /// Divides a face if it must be; says whether labels have changed.
-fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], face: usize) -> bool {
+fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], face: usize, cell: f64) -> bool {
     let number = groups.label[face];
     let label = labels.all[number as usize];
     let triangles = groups.triangles(face);
@@ -94,7 +94,7 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
         return true;
     }
     for k in 0..2 {
-        if chart.periodic()[k] && goes_round(net, groups, face, |p| chart.uv(p)[k], &place) {
+        if chart.periodic()[k] && goes_round(net, groups, face, |p| angle(&chart, p, k, cell), &place) {
             let plane = if k == 0 {
                 chart.through_axis(free_angle(net, groups, corners, face, &chart))
             } else {
@@ -138,6 +138,12 @@ fn cut(net: &Net, labels: &mut Labels, groups: &Groups, face: usize, plane: Surf
     true
 }
 
+/// An angle of a chart, unless the tip of a cone is so near that those of neighbours may be anything.
+fn angle(chart: &Chart, p: Vector3<f64>, k: usize, cell: f64) -> Option<f64> {
+    let at_tip = matches!(chart.surface, Surface::Analytic(A::Cone { .. })) && (p - chart.origin).norm() < 1.2 * cell;
+    if at_tip { None } else { chart.uv(p)[k] }
+}
+
 /// Whether an angle does not come back to itself somewhere on a face, or reaches too far round.
 fn goes_round(
     net: &Net,
@@ -147,9 +153,10 @@ fn goes_round(
     place: &impl Fn(u32) -> Vector3<f64>,
 ) -> bool {
     let mut known = std::collections::BTreeMap::new();
-    let start = groups.triangles(face)[0];
-    known.insert(start, angle(place(start)).unwrap_or(0.0));
-    let mut next = vec![start];
+    let mut starts = groups.triangles(face).iter();
+    let start = starts.find_map(|start| Some((*start, angle(place(*start))?)));
+    known.extend(start);
+    let mut next: Vec<u32> = known.keys().copied().collect();
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     while let Some(triangle) = next.pop() {
         let here = known[&triangle];
@@ -159,7 +166,9 @@ fn goes_round(
             if groups.of[other as usize] as usize != face {
                 continue;
             }
-            let there = angle(place(other)).map_or(here, |there| here + wrapped(there - here));
+            let Some(there) = angle(place(other)).map(|there| here + wrapped(there - here)) else {
+                continue;
+            };
             match known.get(&other) {
                 Some(before) if (before - there).abs() > PI => return true,
                 Some(_) => {}
