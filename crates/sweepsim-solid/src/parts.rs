@@ -12,28 +12,28 @@ pub(crate) type Use = (u32, bool);
 pub struct SolidOptions {
     /// How far interval ends may be from the surfaces that made them.
     pub tolerance: f64,
-    /// How far surfaces that touch may be from each other: programs round their numbers.
-    pub gap: f64,
+    /// How far edges of triangles may be from the curved faces beside them.
+    pub chord: f64,
     /// The distance of the dexels' lines.
     pub cell: f64,
 }
 
 impl SolidOptions {
-    /// Options with these lengths: the gap is the tolerance.
+    /// Options with these lengths: chords are as near as ends.
     #[must_use]
     pub fn new(tolerance: f64, cell: f64) -> Self {
         Self {
             tolerance,
-            gap: tolerance,
+            chord: tolerance,
             cell,
         }
     }
 
-    /// Surfaces may be so far from each other where they touch.
+    /// Edges of triangles may be so far from curved faces: the nearer, the more triangles.
     #[must_use]
-    pub fn with_gap(self, gap: f64) -> Self {
+    pub fn with_chord(self, chord: f64) -> Self {
         Self {
-            gap: gap.max(self.tolerance),
+            chord: chord.max(self.tolerance),
             ..self
         }
     }

@@ -83,7 +83,7 @@ impl Solid {
             }
             if finest < FINEST
                 && round < ROUNDS
-                && let Some((mesh, of_triangle)) = finer(&net, &labels, 0.25 * options.gap)
+                && let Some((mesh, of_triangle)) = finer(&net, &labels, options.chord)
             {
                 finest += 1;
                 let mut ends = net.ends.into_owned();

@@ -131,16 +131,8 @@ fn touches(p: Vector3<f64>, [a, b]: [&Surface; 2], scale: &SolidOptions) -> bool
     }
     meet(p, &conditions, scale.cell).is_some_and(|(q, off)| {
         let parallel = sine(a, b, q).is_some_and(|sine| sine < 1e-3);
-        parallel && off <= scale.gap && (q - p).norm() <= FAR * scale.cell
+        parallel && off <= scale.tolerance && (q - p).norm() <= FAR * scale.cell
     })
-}
-
-/// How far a point may be from the surfaces that meet there.
-fn limit(conditions: &[Condition], scale: &SolidOptions) -> f64 {
-    let touch = conditions
-        .iter()
-        .any(|condition| matches!(condition, Condition::Touch(..)));
-    if touch { scale.gap } else { scale.tolerance }
 }
 
 /// The conditions of a corner.
@@ -189,7 +181,7 @@ fn nodes(
         let found = match tip {
             Ok(tip) => Some(chains.tips[tip].1),
             Err(_) => meet(start, &corner.conditions, scale.cell)
-                .filter(|(p, off)| *off <= limit(&corner.conditions, scale) && near(*p, *vertex))
+                .filter(|(p, off)| *off <= scale.tolerance && near(*p, *vertex))
                 .map(|(p, _)| p),
         };
         (corner.place, corner.found) = (found.unwrap_or(start), found.is_some());
@@ -211,7 +203,7 @@ fn nodes(
         let conditions: Vec<Condition> = one.conditions.iter().chain(&two.conditions).copied().collect();
         let start = (net.place(a) + net.place(b)) * 0.5;
         let found = meet(start, &conditions, scale.cell)
-            .filter(|(p, off)| *off <= limit(&conditions, scale) && near(*p, a) && near(*p, b));
+            .filter(|(p, off)| *off <= scale.tolerance && near(*p, a) && near(*p, b));
         if let Some((place, _)) = found {
             for vertex in [a, b] {
                 if let Some(corner) = corners.get_mut(&vertex) {
@@ -299,7 +291,7 @@ fn course<'a>(
     let guide = |vertex: u32| {
         let start = net.place(vertex);
         let (p, off) = meet(start, &conditions, scale.cell)?;
-        (off <= limit(&conditions, scale) && (p - start).norm() <= FAR * scale.cell).then_some(p)
+        (off <= scale.tolerance && (p - start).norm() <= FAR * scale.cell).then_some(p)
     };
     let inner = if chain.vertices.len() > 2 {
         some(chain, GUIDES)
@@ -320,6 +312,6 @@ fn course<'a>(
         guides: inner.into_iter().filter_map(guide).collect(),
         length: length.sum(),
         cell: scale.cell,
-        tolerance: (0.1 * scale.tolerance + missed).max(if touch { scale.gap } else { 0.0 }),
+        tolerance: (0.1 * scale.tolerance + missed).max(if touch { scale.tolerance } else { 0.0 }),
     }
 }

@@ -29,7 +29,7 @@ impl<'a> Flat<'a> {
         Self {
             placed,
             instead: (0..placed.edges.len() as u32).map(|edge| vec![(edge, true)]).collect(),
-            width: options.gap.max(4.0 * options.tolerance),
+            width: 4.0 * options.tolerance,
             low: LOW * options.cell,
         }
     }

@@ -2,6 +2,7 @@
 //! they were made. Volumes are those of closed forms; faces are counted, or a solid of triangles would pass.
 
 mod claims;
+mod fixtures;
 mod free_ends;
 mod parts;
 

@@ -14,8 +14,8 @@ use sweepsim_dexel::{Source, SurfaceEnd, TriDexels};
 use sweepsim_formats::Report;
 use sweepsim_solid::{Solid, SolidOptions, StepHeader, Summary, Surface, write_step};
 
-/// How far surfaces that touch may be apart, in millimetres: programs round to 0.001 mm, or to 0.0001 in.
-const ROUNDED: f64 = 2e-3;
+/// How far edges of triangles may be from the curved faces beside them, in millimetres: half of what readers take.
+const CHORD: f64 = 5e-4;
 /// Kinds of faces with one of them and several, in the order in which they are counted.
 const KINDS: [(&str, &str, &str); 7] = [
     ("plane", "plane", "planes"),
@@ -68,7 +68,7 @@ fn of(solid: &TriDexels, session: Session) -> Result<Solid, JobError> {
     };
     let cells = solid.cells();
     let cell = (0..3).map(|k| (solid.max()[k] - solid.min()[k]) / cells[k] as f64);
-    let options = SolidOptions::new(job.tolerance, cell.fold(0.0, f64::max)).with_gap(ROUNDED);
+    let options = SolidOptions::new(job.tolerance, cell.fold(0.0, f64::max)).with_chord(CHORD);
     Solid::new(&mesh, &ends, &candidates, options).map_err(|error| failed(&error))
 }
 

@@ -1,0 +1,59 @@
+//! The first job of the README, and a corner of a shop's plate.
+
+use super::{kinds, outputs};
+use std::path::Path;
+use sweepsim_formats::parse_step;
+use sweepsim_job::{Output, Request, Task};
+
+/// A pocket, and a groove for five axes, which stays triangles.
+#[test]
+fn quickstart() {
+    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/jobs/quickstart.ron");
+    let request = Request::from_file(job)
+        .task(Task::Simulate)
+        .cells([75, 50])
+        .outputs([Output::Step]);
+    let outcome = request.plan().unwrap().run(&()).unwrap();
+    let mut memory = sweepsim_job::Memory::default();
+    outcome.write_to(&mut memory, &[Output::Step], &()).unwrap();
+    let part = parse_step(&memory.0["part.step"], 0.05).unwrap();
+    let faces = kinds(&part);
+    assert!(faces["cylinder"] >= 4 && faces["plane"] > 1000, "{faces:?}");
+    // Where the groove ends, the last place of the ball.
+    assert!(faces.contains_key("sphere"), "{faces:?}");
+    let [body] = &part.bodies[..] else {
+        panic!("{} bodies", part.bodies.len())
+    };
+    let (volume, dexels) = (body.volume.unwrap(), outcome.part().volume());
+    assert!((volume - dexels).abs() < 5e-3 * dexels, "{volume} {dexels}");
+}
+
+/// Holes, a countersink and slots, as a CAM system wrote them in inches.
+#[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+fn corner_of_a_plate() {
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/shop/nist_smstestbed/plate-1.nc");
+    let flat = [(15, 38.1), (3, 6.35), (4, 3.175), (5, 1.5875), (1, 1.1811)];
+    let tools = flat.map(|(number, radius)| format!("{number}: Flat(radius: {radius}, length: 40)"));
+    let drills = [(7, 6.35), (23, 1.5875)].map(|(number, r): (u32, f64)| {
+        format!("{number}: Profile(start: (0, 0), segments: [Line(({r}, {r})), Line(({r}, 40)), Line((0, 40))])")
+    });
+    let job = format!(
+        "Job(grid: Grid(min: (-1, -78), max: (32, -42), cells: (60, 66)), stock: Block(min: (0, -77, -5), max: (31, -43, 0)), \
+         tools: {{ {}, {} }}, paths: [Path(file: {program:?})])",
+        tools.join(", "),
+        drills.join(", ")
+    );
+    let (memory, notes) = outputs(&job, &[Output::Step]);
+    let part = parse_step(&memory.0["part.step"], 0.05).unwrap();
+    let faces = kinds(&part);
+    assert!(faces["cylinder"] >= 6 && faces["cone"] >= 2, "{faces:?}");
+    let note = notes.iter().find(|note| note.starts_with("part.step")).unwrap();
+    let share = note.split("triangles are ").nth(1).map_or(0.0, |rest| {
+        rest.split(' ')
+            .next()
+            .and_then(|number| number.parse().ok())
+            .unwrap_or(100.0)
+    });
+    assert!(share < 2.0, "{note}");
+}
