@@ -19,6 +19,9 @@ const MOST_STEPS: usize = 20_000;
 const PARALLEL: f64 = 1e-2;
 const BESIDE: f64 = 0.02;
 
+/// Points of a curve with its unit tangents.
+type PointsAndTangents = (Vec<Vector3<f64>>, Vec<Vector3<f64>>);
+
 /// An edge to be: two surfaces, two ends, and points on its way.
 pub(super) struct Course<'a> {
     pub surfaces: [&'a Surface; 2],
@@ -204,10 +207,10 @@ impl<'a> Course<'a> {
     fn spline(&self) -> Option<Edge> {
         let mut step = 0.5 * self.cell;
         for _ in 0..FINER {
-            if let Some((points, tangents)) = self.trace(step) {
-                if let Some(edge) = self.checked_spline(&points, &tangents) {
-                    return Some(edge);
-                }
+            if let Some((points, tangents)) = self.trace(step)
+                && let Some(edge) = self.checked_spline(&points, &tangents)
+            {
+                return Some(edge);
             }
             step *= 0.5;
         }
@@ -252,7 +255,7 @@ impl<'a> Course<'a> {
     }
 
     /// Points of the curve with its tangents, from end to end.
-    fn trace(&self, step: f64) -> Option<(Vec<Vector3<f64>>, Vec<Vector3<f64>>)> {
+    fn trace(&self, step: f64) -> Option<PointsAndTangents> {
         let conditions = self.conditions();
         let [from, to] = self.ends;
         let most = (4.0 * self.length / step) as usize + 20;
