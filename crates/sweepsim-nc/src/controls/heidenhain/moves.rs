@@ -3,7 +3,6 @@
 use super::interpreter::Reader;
 use super::line::{self, Line};
 use crate::machines::SHORTEST;
-use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// The words of a move.
@@ -21,11 +20,19 @@ pub(super) struct MoveWords {
     pub(super) normal: [Option<f64>; 3],
     pub(super) tool: [Option<f64>; 3],
     pub(super) rapid: bool,
-    pub(super) machine: bool,
+    /// In machine coordinates (`M91`), or from a point that only the builder knows (`M92`).
+    pub(super) machine: Option<Datum>,
     /// `M140 MB`: the way back along the tool, or all of it.
     pub(super) retract: Option<Option<f64>>,
     /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
     pub(super) side: Option<Option<bool>>,
+}
+
+/// What coordinates of the machine are measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Datum {
+    Machine,
+    Builder,
 }
 
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
@@ -106,7 +113,11 @@ impl Reader<'_> {
                         let value = value(self, &name[1..])?;
                         words.axes[k] = Some((if k < 3 { value * self.unit() } else { value }, relative));
                     } else if let Some(rest) = named("M") {
-                        words.machine |= matches!(rest, "91" | "92");
+                        words.machine = match rest {
+                            "91" => Some(Datum::Machine),
+                            "92" => Some(Datum::Builder),
+                            _ => words.machine,
+                        };
                     } else if let Some(rest) = named("F") {
                         self.track.feed = Some(value(self, rest)?);
                     } else if let Some(rest) = named("R") {
@@ -162,12 +173,8 @@ impl Reader<'_> {
                 )
                 .map_err(whole);
         }
-        if words.machine {
-            self.track
-                .note("moves in machine coordinates are left out: the path breaks here");
-            self.track.turn_unknown(abc).map_err(whole)?;
-            self.track.leave(linear);
-            return Ok(());
+        if let Some(datum) = words.machine {
+            return self.go_from_datum(datum, &words, abc).map_err(whole);
         }
         if abc != self.track.abc && self.frames.tilted() && !self.modes.tip_control {
             let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
@@ -223,25 +230,6 @@ impl Reader<'_> {
             self.call_cycle().map_err(whole)?;
         }
         Ok(())
-    }
-
-    /// `M140`: back along the tool, by so much or to the end of the travel.
-    fn retract(&mut self, way: Option<f64>, rapid: bool) -> Result<(), NcProblem> {
-        let (Some(way), Some(here)) = (way, self.track.known()) else {
-            if way.is_none() {
-                let taken = "the move is left out; where the tool is then is known again from the next moves";
-                let what = "the end of the travel along the tool (M140 MB MAX)";
-                self.track
-                    .assume(Assumption::new(what, taken, "M140 MB with a length").harmless());
-            }
-            self.track.leave([true; 3]);
-            return Ok(());
-        };
-        let axis = self.track.direction()?;
-        let at = self.track.frame().point(here);
-        let back = std::array::from_fn(|k| at[k] + way * axis[k]);
-        let target = self.track.frame().inverse_point(back).unwrap_or(here);
-        self.track.line(target, self.track.abc, rapid)
     }
 
     /// Where a block ends, in the frame; `None` if that is not known yet.
