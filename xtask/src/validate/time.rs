@@ -233,7 +233,8 @@ fn score(rows: &[Row]) -> Score {
     }
 }
 
-/// Fits the ready machine's accelerations, corners and smoothing to the first log anew. Returns them, and those that it has.
+/// Fits the ready machine's accelerations, corners and smoothing to the first log anew. Returns them, and those that it
+/// has.
 pub fn fit(folder: &Path) -> Result<String, String> {
     let found = fitted(&Case::read(folder, LOGS[0])?)?;
     Ok(format!("{MACHINE}: {}\nfitted: {}", Fit::ready()?.text(), found.text()))

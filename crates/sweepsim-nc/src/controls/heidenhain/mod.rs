@@ -16,7 +16,6 @@ mod frames;
 mod interpreter;
 mod line;
 mod moves;
-mod places;
 mod planes;
 mod routine;
 mod settings;
