@@ -177,12 +177,13 @@ fn proven(
         let solid = obstacle.triangles.as_ref().map_err(String::clone);
         (
             number,
-            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number))),
+            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number), &proof.known(Some(number)))),
             obstacle.setup,
         )
     };
     let obstacles = proof.asked.obstacles.iter().enumerate();
-    let solids: Vec<_> = obstacles.map(|(number, own)| solid_of(number, own)).collect();
+    let solids = || obstacles.map(|(number, own)| solid_of(number, own)).collect();
+    let (solids, digest): (Vec<_>, String) = rayon::join(solids, || proof.scene.digest());
     let mut all = Vec::new();
     for asked in &proof.asked.statements {
         let own = asked.obstacles.iter().map(|number| &solids[*number]);
@@ -218,10 +219,10 @@ fn proven(
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
     }
-    let certified = claims.iter().any(Option::is_some).then(|| Certified {
-        scene: proof.scene.digest(),
-        claims,
-    });
+    let certified = claims
+        .iter()
+        .any(Option::is_some)
+        .then(|| Certified { scene: digest, claims });
     let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
