@@ -31,6 +31,9 @@ const LISTED: usize = 100;
 /// What goes too deep may have to be lifted so many limits.
 const LIFTS: f64 = 2.5;
 
+/// Every proof is kept for a checker.
+const RECORDED: bool = true;
+
 /// A statement with the moves that were seen to break it.
 struct Proven {
     statement: Statement,
@@ -113,12 +116,6 @@ impl<'a> Proof<'a> {
     /// How far something may have to be lifted out of an obstacle.
     fn lift(&self, obstacle: usize) -> f64 {
         LIFTS * self.asked.deepest(obstacle)
-    }
-
-    /// Whether proofs are kept for a checker.
-    #[allow(clippy::unused_self)]
-    fn recorded(&self) -> bool {
-        true
     }
 
     /// An answer to the question that asks a statement of one of its obstacles.
@@ -222,7 +219,7 @@ fn proven(
     let certified = claims
         .iter()
         .any(Option::is_some)
-        .then(|| Certified { scene: digest, claims });
+        .then_some(Certified { scene: digest, claims });
     let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
@@ -252,7 +249,7 @@ fn gouges(
         solid,
         &own,
         &proof.asked.limits(asked),
-        proof.recorded(),
+        RECORDED,
         proof.session.monitor,
     );
     let found = found.ok_or(JobError::Cancelled)?;
