@@ -185,6 +185,8 @@ enum Prediction {
     Size,
     /// The times of a program's blocks.
     Time,
+    /// What those times depend on, fitted anew to the log of one part.
+    Fit,
 }
 
 /// Runs the same command in a release build; measurements of any other would be misleading.

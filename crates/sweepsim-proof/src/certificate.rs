@@ -5,6 +5,7 @@ use crate::motion::{Cutter, Piece};
 use crate::search::{Closest, Enclosed, TOGETHER, Tree};
 use crate::solid::Target;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 use sweepsim_check::{Claim, Course, Curve, Motion, Outline, Question, Scene, Witness, packed};
 use sweepsim_motion::{MeridianCurve, MeridianShape, Segment, Tool};
 
@@ -134,7 +135,7 @@ fn trees(
             bytes: packed(&tree.bytes),
         })
     };
-    let trees = all.iter().map(one).collect::<Option<_>>()?;
+    let trees = all.par_iter().map(one).collect::<Option<_>>()?;
     Some((movers.into_iter().map(|(_, _, cover)| cover).collect(), trees))
 }
 
@@ -221,6 +222,6 @@ pub fn height_claim(scene: &Scene, question: &Question, cutters: Answering, left
         root: ([0.0; 3], 0.0),
         lift: 0.0,
         covers,
-        trees: left.trees.iter().map(tree).collect(),
+        trees: left.trees.par_iter().map(tree).collect(),
     })
 }

@@ -20,16 +20,18 @@ pub(crate) struct Outcome(Arc<sweepsim_job::Outcome>);
 
 /// Carries out a request, in its notation as JSON, with what is given in memory.
 #[pyfunction]
-#[pyo3(signature = (request, tools, stock=None, target=None, progress=None))]
+#[pyo3(signature = (request, tools, stock=None, target=None, cache=None, progress=None))]
 pub(crate) fn run(
     py: Python<'_>,
     request: &str,
     tools: BTreeMap<u32, PyRef<'_, Tool>>,
     stock: Option<Solid<'_>>,
     target: Option<Solid<'_>>,
+    cache: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Outcome> {
     let mut request: Request = serde_json::from_str(request).map_err(|error| wrong(py, error))?;
+    request = request.cache(cache);
     for (number, tool) in tools {
         request = request.tool(number, tool.tool.clone());
     }
@@ -71,6 +73,12 @@ impl Outcome {
         let plan = self.0.plan();
         let guessed = plan.guessed().iter().map(ToString::to_string);
         (plan.found().to_vec(), guessed.collect())
+    }
+
+    /// How many moves were judged again, of how many, and what is wrong with the cache; if there was one.
+    fn reused(&self) -> Option<(usize, usize, Vec<String>)> {
+        let reused = self.0.reused()?;
+        Some((reused.again, reused.moves, reused.notes))
     }
 
     fn certified(&self) -> bool {

@@ -125,3 +125,33 @@ def test_a_notebook_shows_picture_and_findings(facing: str) -> None:
     assert outcome.answer is not None and outcome.answer in page.words
     assert outcome.picture.startswith(b"\x89PNG")
     assert outcome.answer in repr(outcome)
+
+
+def test_a_changed_program_is_judged_from_the_change_on(tmp_path: Path) -> None:
+    lines = ["G21 G90", "T1 M6", "S8000 M3", "G0 X-8 Y0 Z5", "G0 Z-1"]
+    lines += [f"G1 X{48 if row % 2 == 0 else -8} F600\nG1 Y{row}" for row in range(20)]
+    text = "\n".join([*lines, "G0 Z5", "M30", ""])
+
+    def judged(program: str, cache: Path | None) -> sweepsim.Outcome:
+        target = box([0, 0, -10], [40, 20, -1.2])
+        return sweepsim.verify(
+            program, tools=TOOLS, stock=BLOCK, target=target, limits=(0.05, 0.1), cells=(40, 20), cache=cache
+        )
+
+    first = judged(text, tmp_path)
+    assert first.reused is not None and first.reused.again == first.reused.moves and first.reused.notes == []
+    again = judged(text, tmp_path).reused
+    assert again is not None and again.again == 0
+    changed = text.replace("G1 Y17", "G1 Y17 Z-0.9")
+    assert changed != text
+    second, without = judged(changed, tmp_path), judged(changed, None)
+    assert without.reused is None
+    assert second.reused is not None and 0 < second.reused.again < second.reused.moves / 2
+    assert second.findings == without.findings and second.findings != first.findings
+    assert second.statements == without.statements
+    assert (second.part.intervals == without.part.intervals).all()
+    # A cache that cannot be is done without, and that is said.
+    (tmp_path / "file").write_text("")
+    spoilt = judged(text, tmp_path / "file")
+    assert spoilt.findings == first.findings
+    assert spoilt.reused is not None and spoilt.reused.notes != []

@@ -1,5 +1,5 @@
 //! `cargo xtask mutate`: readers on files that are almost right. Whatever is in a file, a reader answers, by a result
-//! or an error, without a panic and soon.
+//! or an error, without a panic, soon, and within little memory.
 //!
 //! Files that a reader failed on are kept in `fixtures/mutations/READER`, as small as they could be made, and tried
 //! first from then on.
@@ -14,6 +14,8 @@ use std::{fs, panic};
 
 /// A reader may take so long for a file of a few kilobytes.
 const LONGEST: Duration = Duration::from_secs(2);
+/// And so many bytes beyond what others took.
+const MOST: u64 = 256 << 20;
 /// Files of shared data are taken up to this size.
 const LARGEST: usize = 64 << 10;
 /// How often a failure is made smaller.
@@ -98,9 +100,9 @@ fn search(
 
 /// What is wrong with the answer of a reader, if it is.
 fn fails(reader: &Reader, file: &[u8]) -> Option<String> {
-    let begin = Instant::now();
+    let (begin, before) = (Instant::now(), peak());
     let answer = panic::catch_unwind(|| (reader.read)(file));
-    let took = begin.elapsed();
+    let (took, more) = (begin.elapsed(), peak().saturating_sub(before));
     match answer {
         Err(payload) => {
             let message = payload.downcast_ref::<String>().map(String::as_str);
@@ -109,8 +111,17 @@ fn fails(reader: &Reader, file: &[u8]) -> Option<String> {
         }
         Ok(Some(error)) if error.trim().is_empty() => Some("an error without a message".into()),
         Ok(_) if took > LONGEST => Some(format!("took {took:.1?}")),
+        Ok(_) if more > MOST => Some(format!("took {} MiB", more >> 20)),
         Ok(_) => None,
     }
+}
+
+/// The most memory that this process has ever held, in bytes; 0 where the system does not tell.
+fn peak() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+    kib.unwrap_or(0) << 10
 }
 
 /// What is there to begin with: files that the reader failed on, its own, and those of shared data if they are wanted.
@@ -230,9 +241,14 @@ fn keep(reader: &Reader, file: &[u8]) -> Result<PathBuf, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Mutex;
+
+    /// What one test takes of memory is no failure of another's readers.
+    static ALONE: Mutex<()> = Mutex::new(());
 
     #[test]
     fn readers_answer_whatever_is_in_a_file() {
+        let _alone = ALONE.lock();
         for reader in &READERS {
             let corpus = corpus(reader, false);
             if let Some(own) = corpus.last() {
@@ -264,5 +280,20 @@ mod tests {
         let file = smaller(&reader, file);
         panic::set_hook(hook);
         assert_eq!((file, why.as_str()), (b"NaN".to_vec(), "panicked: no number"));
+    }
+
+    #[test]
+    fn a_reader_that_takes_much_memory_fails() {
+        let _alone = ALONE.lock();
+        let reader = Reader {
+            name: "greedy",
+            endings: &[],
+            own: Vec::new,
+            read: |file| (file.repeat(1 << 20).len() < file.len()).then(|| "cannot be".into()),
+        };
+        assert_eq!(fails(&reader, &[1; 16]), None);
+        // Where the system does not tell, nothing can be said.
+        let why = fails(&reader, &[1; 1024]);
+        assert!(peak() == 0 || why.is_some_and(|why| why.ends_with("MiB")));
     }
 }

@@ -18,6 +18,7 @@ pub fn run(what: Prediction) -> Result<(), String> {
     }
     match what {
         Prediction::Size => size::run(&shop).map(|text| println!("{text}")),
+        Prediction::Fit => time::fit(&shop).map(|text| println!("{text}")),
         Prediction::Time => {
             let (text, plot) = time::run(&shop)?;
             println!("{text}");

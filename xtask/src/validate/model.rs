@@ -3,11 +3,10 @@
 
 use super::log::Run;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use sweepsim_nc::{Machine, ReadOptions, gcode};
+use sweepsim_nc::{Machine, MachineDescription, ReadOptions, gcode};
 
-/// Largest speeds of the axes, in mm/min: 338.67 mm/s is logged for long rapids.
-const RAPID: f64 = 338.67 * 60.0;
+/// The ready machine that is judged: its largest speeds are not fitted.
+pub const MACHINE: &str = "hurco-04";
 
 /// The end of the dial of feed overrides.
 const DIAL: f64 = 1.5;
@@ -41,22 +40,42 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The machine's description, at a rapid override.
-    pub fn machine(&self, rapid: f64) -> String {
-        let mut text = format!(
-            "Machine(name: \"Hurco\", corner_deviation: {}, smoothing: {}, rapid: Straight, linear: [",
-            self.corner, self.smoothing
-        );
-        for letter in ['X', 'Y', 'Z'] {
-            let speed = RAPID * rapid;
-            let _ = write!(
-                text,
-                "(letter: '{letter}', speed: {speed}, acceleration: {}, rapid_acceleration: {}), ",
-                self.acceleration, self.rapid_acceleration
-            );
-        }
-        text + "])"
+    /// Of the ready machine.
+    pub fn ready() -> Result<Self, String> {
+        let machine = description()?;
+        let axis = machine.linear.first().ok_or("no axes")?;
+        Ok(Self {
+            acceleration: axis.acceleration.ok_or("no acceleration")?,
+            rapid_acceleration: axis.rapid_acceleration.ok_or("no rapid_acceleration")?,
+            corner: machine.corner_deviation.ok_or("no corner_deviation")?,
+            smoothing: machine.smoothing,
+            waits: [0.0; WAITS.len()],
+        })
     }
+
+    /// The ready machine with what is fitted in place of its own, at a rapid override.
+    fn machine(&self, rapid: f64) -> Result<Machine, String> {
+        let mut machine = description()?;
+        (machine.corner_deviation, machine.smoothing) = (Some(self.corner), self.smoothing);
+        for axis in &mut machine.linear {
+            axis.speed = axis.speed.map(|speed| speed * rapid);
+            (axis.acceleration, axis.rapid_acceleration) = (Some(self.acceleration), Some(self.rapid_acceleration));
+        }
+        Machine::new(machine).map_err(|error| error.to_string())
+    }
+
+    /// What is fitted, in words.
+    pub fn text(&self) -> String {
+        format!(
+            "acceleration {:.0} mm/s², in rapids {:.0} mm/s², corners {:.4} mm, smoothing {:.3} s",
+            self.acceleration, self.rapid_acceleration, self.corner, self.smoothing
+        )
+    }
+}
+
+fn description() -> Result<MachineDescription, String> {
+    let machine = Machine::named(MACHINE).and_then(|machine| machine.kinematics);
+    Ok(machine.ok_or("no such machine")?.description().clone())
 }
 
 /// What a block does besides cutting, as a place in [`Fit::waits`]; `None`: it only moves.
@@ -161,7 +180,7 @@ impl Blocks {
         let mut options = ReadOptions::default();
         options.exact_arcs = true;
         options.lenient = true;
-        options.machine = Machine::read(&fit.machine(rapid)).map_err(|error| error.to_string())?;
+        options.machine = fit.machine(rapid)?;
         let program = gcode::read(&text, &options).map_err(|error| error.to_string())?;
         let mut lines: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
         for (pose, time) in program.poses.in_order().zip(program.times()) {

@@ -1,7 +1,7 @@
 //! Predicted times of blocks against the logs of a machine.
 
 use super::log::{POLLED, Run};
-use super::model::{Blocks, Fit, WAITS, wait};
+use super::model::{Blocks, Fit, MACHINE, WAITS, wait};
 use crate::plot::{Axis, Panel, Series, figure};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -146,11 +146,11 @@ fn descended(mut fit: Fit, wrong: &impl Fn(&Fit) -> Result<f64, String>) -> Resu
             }
         }
     }
-    println!("fitted to a sum of {least:.1} s: {}", fit.machine(1.0));
+    println!("fitted to a sum of {least:.1} s: {}", fit.text());
     Ok((least, fit))
 }
 
-/// Fits accelerations, corners and smoothing to the moves, then the waits to what else there is.
+/// Fits accelerations, corners and smoothing to the moves.
 fn fitted(case: &Case) -> Result<Fit, String> {
     let wrong = |fit: &Fit| -> Result<f64, String> {
         let rows = case.rows(fit)?;
@@ -181,7 +181,11 @@ fn fitted(case: &Case) -> Result<Fit, String> {
             best = Some((sum, fit));
         }
     }
-    let (_, mut fit) = best.ok_or("no start")?;
+    best.map(|(_, fit)| fit).ok_or_else(|| "no start".into())
+}
+
+/// With the seconds of what is no move, by what the moves leave of a log.
+fn with_waits(mut fit: Fit, case: &Case) -> Result<Fit, String> {
     let rows = case.rows(&fit)?;
     for kind in 0..fit.waits.len() {
         let own = rows
@@ -229,15 +233,21 @@ fn score(rows: &[Row]) -> Score {
     }
 }
 
-/// Fits the machine on the first log, judges it on all, prints the table and draws the plot. Returns the table and the
-/// plot.
+/// Fits the ready machine's accelerations, corners and smoothing to the first log anew. Returns them, and those that it
+/// has.
+pub fn fit(folder: &Path) -> Result<String, String> {
+    let found = fitted(&Case::read(folder, LOGS[0])?)?;
+    Ok(format!("{MACHINE}: {}\nfitted: {}", Fit::ready()?.text(), found.text()))
+}
+
+/// Judges the ready machine on all logs, with the waits of the first one. Returns the table and the plot.
 pub fn run(folder: &Path) -> Result<(String, String), String> {
     let cases: Vec<Case> = LOGS
         .iter()
         .map(|log| Case::read(folder, *log))
         .collect::<Result<_, _>>()?;
-    let fit = fitted(&cases[0])?;
-    let mut text = format!("{}\n\n", fit.machine(1.0));
+    let fit = with_waits(Fit::ready()?, &cases[0])?;
+    let mut text = format!("{MACHINE}: {}\n\n", fit.text());
     for ((name, _), seconds) in WAITS.iter().zip(fit.waits) {
         let _ = write!(text, "{name} {seconds:.2} s, ");
     }

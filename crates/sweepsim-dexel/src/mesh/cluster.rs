@@ -4,7 +4,7 @@ use super::quadric::Quadric;
 use super::{DistanceTo, Mesh, MeshError};
 use crate::vector::sub;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// How much larger the cells become after an attempt that leaves too many triangles, at least.
 const GROWTH: f64 = 1.08;
@@ -88,7 +88,7 @@ impl Mesh {
 
     fn in_cells(&self, triangles: &[[u32; 3]], low: [f64; 3], cell: f64) -> ClusteredMesh {
         // Only looked up, so its order does not matter.
-        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut numbers: FxHashMap<[u32; 3], u32> = FxHashMap::default();
         let mut planes: Vec<Quadric> = Vec::new();
         let mut cell_of = vec![u32::MAX; self.vertices.len()];
         for triangle in triangles {
@@ -116,7 +116,7 @@ impl Mesh {
         }
         let mut mesh = Self::default();
         let mut from = Vec::new();
-        let mut made: HashMap<(u32, u8), u32> = HashMap::new();
+        let mut made: FxHashMap<(u32, u8), u32> = FxHashMap::default();
         let mut sums: Vec<[f64; 3]> = Vec::new();
         for triangle in triangles {
             let cells = triangle.map(|v| cell_of[v as usize]);

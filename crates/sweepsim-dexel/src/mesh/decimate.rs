@@ -5,7 +5,7 @@ use super::quadric::Quadric;
 use super::{DistanceTo, Mesh, MeshError};
 use crate::vector::{dot, length, normal_of, sub};
 use alum::{DVec3, Decimater, HH, Handle, HasDecimation, HasIterators, HasTopology, PolyMeshF64, VH};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// How often the error that simplification aims at is reduced before the mesh is left as it is.
 const ATTEMPTS: usize = 5;
@@ -64,7 +64,7 @@ impl Mesh {
     fn merged(&self) -> Result<Self, MeshError> {
         let mut made = Self::default();
         // Only looked up, so its order does not matter. Adding 0 makes −0 and 0 one.
-        let mut numbers: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());
+        let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         let mut number = |v: u32, triangle: usize| {
             let place = self.vertices.get(v as usize).copied().unwrap_or([f64::NAN; 3]);
             if !place.iter().all(|c| c.is_finite()) {

@@ -9,8 +9,8 @@
 use super::parts::{self, TrianglePart};
 use super::{FaceSurfaces, MeshError, TriangleSoup};
 use crate::vector::{along, cross, dot, sub};
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
-use std::collections::HashMap;
 
 /// Triangles of a leaf of the tree.
 const LEAF: usize = 4;
@@ -211,7 +211,7 @@ impl DistanceTo {
             .collect();
         let mut around = vec![[0.0; 3]; mesh.vertices.len()];
         // Only looked up, so its order does not matter.
-        let mut edges: HashMap<(u32, u32), [f64; 3]> = HashMap::with_capacity(2 * faces.len());
+        let mut edges: FxHashMap<(u32, u32), [f64; 3]> = FxHashMap::default();
         let key = |a: u32, b: u32| (a.min(b), a.max(b));
         for face in &faces {
             let p = face.corners.map(|v| mesh.vertices[v as usize]);

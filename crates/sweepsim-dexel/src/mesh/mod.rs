@@ -16,8 +16,8 @@ use crate::grid::Frame;
 pub use analytic::{AnalyticSurface, FaceSurfaces};
 pub use cluster::ClusteredMesh;
 pub use distance::{DistanceTo, Nearest, NearestTriangle};
+use rustc_hash::FxHashMap;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
 /// An indexed triangle mesh with vertex normals, for pictures and files.
@@ -241,7 +241,7 @@ impl TriangleSoup {
     pub fn indexed(&self) -> Result<Mesh, MeshError> {
         let mut mesh = Mesh::default();
         // Only looked up, so its order does not matter. Adding 0 makes −0 and 0 one.
-        let mut numbers: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.triangles.len() / 2);
+        let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         let mut sums: Vec<[f64; 3]> = Vec::new();
         for corners in &self.triangles {
             let key = corners.map(|p| p.map(|c| (c + 0.0).to_bits()));
@@ -290,7 +290,7 @@ impl TriangleSoup {
         }
         // Adding 0 makes −0 and 0 one.
         let key = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
-        let mut edges: BTreeMap<([u64; 3], [u64; 3]), i64> = BTreeMap::new();
+        let mut edges: FxHashMap<([u64; 3], [u64; 3]), i64> = FxHashMap::default();
         for (triangle, corners) in self.triangles.iter().enumerate() {
             if !corners.iter().flatten().all(|c| c.is_finite()) {
                 return Err(MeshError::NotFinite { triangle });
@@ -307,11 +307,11 @@ impl TriangleSoup {
                 }
             }
         }
-        let open = edges.values().filter(|count| **count != 0).count();
-        match edges.iter().find(|(_, count)| **count != 0) {
+        let open = || edges.iter().filter(|(_, count)| **count != 0).map(|(edge, _)| edge);
+        match open().min() {
             None => Ok(()),
-            Some(((a, b), _)) => Err(MeshError::Open {
-                edges: open,
+            Some((a, b)) => Err(MeshError::Open {
+                edges: open().count(),
                 from: a.map(f64::from_bits),
                 to: b.map(f64::from_bits),
             }),

@@ -32,9 +32,9 @@ use batch::TriangleBatch;
 use edge::{Class, Edge};
 use outline::Outline;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 pub(crate) use sources::sources_in;
 use square::Square;
-use std::collections::HashMap;
 pub(crate) use steps::{Step, steps};
 
 /// Cosine of 40°: a triangle does not share a vertex whose normal is farther than this from its own.
@@ -344,7 +344,7 @@ fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>, most: usize) -> Result
 fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
     let across = |mesh: &Mesh, t: usize| normal_of(mesh.triangles[t].map(|v| mesh.vertices[v as usize]));
     // Only used for lookups, so its order does not matter.
-    let mut sums: HashMap<u32, ([f64; 3], Option<u32>)> = HashMap::new();
+    let mut sums: FxHashMap<u32, ([f64; 3], Option<u32>)> = FxHashMap::default();
     for (t, c) in creased {
         let sum = &mut sums.entry(mesh.triangles[*t][*c]).or_insert(([0.0; 3], None)).0;
         let n = across(mesh, *t);

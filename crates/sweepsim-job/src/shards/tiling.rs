@@ -47,7 +47,7 @@ const LINE: f64 = 0.5;
 /// How many times as much it costs to judge moves as to cut.
 const JUDGING: f64 = 1.5;
 /// At most so many moves of a path are looked at to estimate the work: every other one, every third…
-const MOVES: usize = 200_000;
+const MOVES: usize = 10_000;
 
 impl TilingSet {
     pub fn new(name: &'static str, grid: Grid, within: Option<Stock>, tile: usize) -> Self {

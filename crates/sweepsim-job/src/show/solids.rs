@@ -1,6 +1,6 @@
 //! Simple solids as triangles, and the bodies of a machine.
 
-use sweepsim_dexel::Mesh;
+use sweepsim_dexel::{Mesh, TriangleSoup};
 use sweepsim_machine::{Body, Convex};
 
 /// Sides of a cylinder, and of a ball from pole to pole.
@@ -10,17 +10,9 @@ pub(crate) const SIDES: usize = 64;
 pub(crate) type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 pub(crate) fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
-    let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
-    let faces: [[u32; 4]; 6] = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
-    ((0..8).map(corner).collect(), triangles.collect())
+    // Eight corners are not too many.
+    let mesh = TriangleSoup::block(min, max).indexed().unwrap_or_default();
+    (mesh.vertices, mesh.triangles)
 }
 
 /// A ring of triangles between two rings of vertices.

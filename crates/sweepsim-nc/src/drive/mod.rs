@@ -25,7 +25,6 @@ pub(crate) use cycles::{
     ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,
 };
 pub(crate) use driver::{Coordinates, Sense};
-pub(crate) use moves::LETTERS;
 pub(crate) use said::{DiameterAsked, UNKNOWN_TOOL};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;

@@ -139,6 +139,9 @@ pub struct LinearAxis {
     /// The largest acceleration, in mm/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<f64>,
+    /// The largest jerk, in mm/s³: how fast the acceleration changes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jerk: Option<f64>,
     /// That of rapids, in mm/s², where it is another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rapid_acceleration: Option<f64>,
@@ -173,6 +176,9 @@ pub struct RotaryAxis {
     /// The largest acceleration, in degrees/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<f64>,
+    /// The largest jerk, in degrees/s³.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jerk: Option<f64>,
     /// Where it stands at the start, in degrees.
     #[serde(default)]
     pub start: f64,
@@ -195,6 +201,7 @@ impl LinearAxis {
             limits: None,
             speed: None,
             acceleration: None,
+            jerk: None,
             rapid_acceleration: None,
             start: 0.0,
             home: None,
@@ -214,6 +221,7 @@ impl RotaryAxis {
             limits: None,
             speed: None,
             acceleration: None,
+            jerk: None,
             start: 0.0,
             home: None,
             second_home: None,
@@ -293,7 +301,7 @@ pub(super) fn check(
 pub(super) fn check_axis(
     letter: char,
     limits: Option<[f64; 2]>,
-    rates: [Option<f64>; 3],
+    rates: [Option<f64>; 4],
     start: f64,
 ) -> Result<(), MachineError> {
     if let Some([least, largest]) = limits {
@@ -306,11 +314,18 @@ pub(super) fn check_axis(
             });
         }
     }
-    for (rate, name) in rates.into_iter().zip(["speed", "acceleration", "rapid_acceleration"]) {
+    for (rate, name) in rates
+        .into_iter()
+        .zip(["speed", "acceleration", "jerk", "rapid_acceleration"])
+    {
         if let Some(rate) = rate {
             let good = rate > 0.0 && rate.is_finite();
             check(|| format!("the {name} of {letter}"), rate, good, "a positive number")?;
         }
+    }
+    if let [_, None, Some(jerk), _] = rates {
+        let expected = "beside an acceleration";
+        check(|| format!("the jerk of {letter}"), jerk, false, expected)?;
     }
     check(
         || format!("the start of {letter}"),

@@ -98,7 +98,7 @@ impl Kinematics {
                 });
             };
             once(axis.letter)?;
-            let rates = [axis.speed, axis.acceleration, axis.rapid_acceleration];
+            let rates = [axis.speed, axis.acceleration, axis.jerk, axis.rapid_acceleration];
             check_axis(axis.letter, axis.limits, rates, axis.start)?;
             if let Some(vector) = axis.direction {
                 let unit = direction(|| format!("the direction of {}", axis.letter), vector)?;
@@ -126,7 +126,7 @@ impl Kinematics {
             check_axis(
                 axis.letter,
                 axis.limits,
-                [axis.speed, axis.acceleration, None],
+                [axis.speed, axis.acceleration, axis.jerk, None],
                 axis.start,
             )?;
             for coordinate in axis.pivot {

@@ -1,13 +1,13 @@
-//! Ready machines: the commonest kinds, without limits that only a maker knows.
+//! Ready machines: the commonest kinds, without limits that only a maker knows, and one whose times were measured.
 
 mod bodies;
 
-use super::description::{MachineDescription, RotaryAxis};
+use super::description::{LinearAxis, MachineDescription, Rapid, RotaryAxis};
 use super::error::MachineError;
 use bodies::with_bodies;
 
 /// The names of the ready machines.
-pub(super) const NAMES: [&str; 13] = [
+pub(super) const NAMES: [&str; 14] = [
     "3-axis",
     "rotary-a",
     "rotary-b",
@@ -21,10 +21,14 @@ pub(super) const NAMES: [&str; 13] = [
     "nutating-head-bc",
     "nutating-table-bc",
     "mill-turn",
+    HURCO,
 ];
 
 /// The one whose part is in a chuck, before a head that comes from its side.
 const MILL_TURN: &str = "mill-turn";
+
+/// A mill of NIST's test bed, with the speeds and accelerations that its log of one part shows: `docs/validation.md`.
+const HURCO: &str = "hurco-04";
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -65,10 +69,22 @@ fn plain(name: &str) -> Option<MachineDescription> {
         "nutating-table-bc" => (vec![at_zero('C', Z), at_zero('B', NUTATING)], vec![]),
         _ => (vec![], vec![]),
     };
-    Some(MachineDescription {
+    let machine = MachineDescription {
         name: (*name).to_owned(),
         table,
         head,
         ..MachineDescription::default()
-    })
+    };
+    Some(if *name == HURCO { hurco(machine) } else { machine })
+}
+
+/// Rapids go at 338.67 mm/s, the largest speed that the log holds at; the rest was fitted to it.
+fn hurco(mut machine: MachineDescription) -> MachineDescription {
+    machine.linear = ['X', 'Y', 'Z'].map(LinearAxis::new).into();
+    for axis in &mut machine.linear {
+        axis.speed = Some(20_320.0);
+        (axis.acceleration, axis.rapid_acceleration) = (Some(320.0), Some(1400.0));
+    }
+    (machine.corner_deviation, machine.smoothing, machine.rapid) = (Some(0.0024), 0.059, Rapid::Straight);
+    machine
 }

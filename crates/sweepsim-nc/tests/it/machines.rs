@@ -95,6 +95,27 @@ fn moves_take_as_long_as_their_feeds_and_axes() {
     assert!(times.iter().all(|time| !time.assumed));
 }
 
+/// The Hurco keeps its rates when it gets sizes, and they give times by hand.
+#[test]
+fn the_hurco_has_the_rates_of_its_log() {
+    let seconds = |name: &str| {
+        let mut options = ReadOptions::default();
+        options.machine = Machine::named(name).unwrap();
+        let text = "G21 G90\nT1 M6\nG0 X0 Y0 Z0\nG1 X32 F1920\nG0 Y-180\n";
+        let program = gcode::read(text, &options).unwrap();
+        let last = program.times().split_off(program.poses.len() - 2);
+        [0, 1].map(|k| last[k].seconds.unwrap())
+    };
+    // 32 mm/s after 0.1 s, on average over 0.059 s; a rapid reaches 338.67 mm/s after 0.24 s and 41 mm.
+    let v = 20_320.0 / 60.0;
+    let expected = [1.0 + 0.1 + 0.059, 180.0 / v + v / 1400.0 + 0.059];
+    for name in ["hurco-04", "hurco-04,table=320,travel=500x400x400", "3-axis"] {
+        let found = seconds(name);
+        let same = (0..2).all(|k| (found[k] - expected[k]).abs() < 1e-9);
+        assert_eq!(same, name != "3-axis", "{name} {found:?} {expected:?}");
+    }
+}
+
 #[test]
 fn an_unknown_machine_names_the_ready_ones() {
     let error = Machine::read_file("hexapod".as_ref()).unwrap_err().to_string();

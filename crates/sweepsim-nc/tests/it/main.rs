@@ -14,6 +14,7 @@ mod gcode;
 mod harmless;
 mod heidenhain;
 mod holes;
+mod jerk;
 mod kinematics;
 mod klartext_cycles;
 mod level_arcs;

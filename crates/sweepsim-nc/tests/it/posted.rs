@@ -100,7 +100,7 @@ fn keeps_the_poses(name: &str, positions: &[Axes], length: f64, tip_control: boo
     }
 }
 
-/// All thirteen machines, whatever the random ones are.
+/// All fourteen machines, whatever the random ones are.
 #[test]
 fn all_machines() {
     let positions = [
@@ -109,7 +109,7 @@ fn all_machines() {
         ([-60.0, 5.0, 12.0], [25.0, -35.0, -80.0]),
         ([0.5, 0.25, -4.0], [-15.0, 60.0, 10.0]),
     ];
-    assert_eq!(Machine::names().len(), 13);
+    assert_eq!(Machine::names().len(), 14);
     for name in Machine::names() {
         for (tip_control, rotary_law) in [(false, false), (false, true), (true, false), (true, true)] {
             keeps_the_poses(name, &positions, 87.5, tip_control, rotary_law);

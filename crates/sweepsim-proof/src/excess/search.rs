@@ -8,14 +8,14 @@ use super::record::{PatchTrees, Record, Step, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
 use super::surface::Patch;
-use crate::motion::Cutter;
+use crate::motion::{Cutter, Stretch};
 use crate::recall::{Recall, Writing};
 use crate::search::Limits;
 use crate::solid::Target;
 use look::Search;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{MeshError, Stock};
 use sweepsim_solve::Monitor;
@@ -100,31 +100,33 @@ pub fn highest_from(
     recorded: bool,
     monitor: &dyn Monitor,
 ) -> Result<Option<Left>, MeshError> {
-    let mut size = target.size;
-    let mut motions = Vec::with_capacity(cutters.len());
-    for cutter in cutters {
-        // Other courses of rapids are only possible.
-        let own = Cutter {
-            others: None,
-            ..*cutter
-        };
-        let all = own.stretches(0..cutter.path.moves(), limits.deviation);
+    // Other courses of rapids are only possible.
+    let own = cutters.iter().map(|cutter| Cutter {
+        others: None,
+        ..*cutter
+    });
+    let motions = || {
+        own.map(|own| own.stretches(0..own.path.moves(), limits.deviation))
+            .collect()
+    };
+    let patches = || {
+        let surface = Patch::around(&target.triangles);
+        let total: f64 = surface.iter().flatten().map(|patch| patch.length().powi(2)).sum();
+        let largest = (total / PARTS).sqrt();
+        parts(surface, |patch| patch.length() > largest)
+    };
+    let (motions, (patches, steps)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, patches);
+    let courses = || cutters.iter().zip(&motions);
+    let size = courses().fold(target.size, |size, (cutter, all)| {
         let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
-        size = far.fold(size, f64::max) + cutter.reach;
-        motions.push(all);
-    }
-    let courses = cutters.iter().zip(&motions);
+        far.fold(size, f64::max) + cutter.reach
+    });
     let margin = 2.0 * margin(target.size, cutters, limits) + ROUNDING * size;
+    let courses = courses().map(|(cutter, all)| Course::new(cutter.solids, all, ROUNDING * size));
     let removed = Removed {
-        courses: courses
-            .map(|(cutter, all)| Course::new(cutter.solids, all, ROUNDING * size))
-            .collect(),
+        courses: courses.collect(),
         margin,
     };
-    let surface = Patch::around(&target.triangles);
-    let total: f64 = surface.iter().flatten().map(|patch| patch.length().powi(2)).sum();
-    let largest = (total / PARTS).sqrt();
-    let (patches, steps) = parts(surface, |patch| patch.length() > largest);
     let triangles = target.triangles.iter();
     let numbers = triangles.map(|own| (key(&own.corners.map(Into::into)), own.number));
     let scene = Scene {
@@ -133,7 +135,11 @@ pub fn highest_from(
         removed,
         patches,
         steps,
-        numbers: if recorded { numbers.collect() } else { HashMap::new() },
+        numbers: if recorded {
+            numbers.collect()
+        } else {
+            FxHashMap::default()
+        },
         // Without some of the triangles, the patches are not those of a checker; and of a mesh, it knows no regions.
         recorded: recorded && target.is_whole && regions(stock, 0.0).is_some(),
     };
@@ -155,7 +161,7 @@ struct Scene<'a> {
     /// How the patches make up the surface.
     steps: Vec<Step>,
     /// The numbers of triangles by their corners, for records.
-    numbers: HashMap<[u64; 9], u32>,
+    numbers: FxHashMap<[u64; 9], u32>,
     recorded: bool,
 }
 

@@ -7,8 +7,8 @@
 
 use crate::solid::Triangle;
 use nalgebra::Vector3;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
-use std::collections::HashMap;
 
 type Vectors = SmallVec<[Vector3<f64>; 3]>;
 /// Triangles, each with a corner.
@@ -43,7 +43,7 @@ impl Patch {
     /// The patches of the surface around a solid: of each triangle, then of its edges with later triangles; at last
     /// those of all corners. None where nothing is.
     pub fn around(triangles: &[Triangle]) -> Vec<SmallVec<[Self; 1]>> {
-        let mut numbers = HashMap::new();
+        let mut numbers = FxHashMap::default();
         let mut places: Vec<Vector3<f64>> = Vec::new();
         let mut faces = Vec::with_capacity(triangles.len());
         for triangle in triangles {
@@ -59,7 +59,7 @@ impl Patch {
         let mut around: Vec<Vectors> = vec![Vectors::new(); places.len()];
         let mut outwards = vec![false; places.len()];
         // The triangles on the left of each edge, and their corners off the edge.
-        let mut sides: HashMap<(usize, usize), Sides> = HashMap::with_capacity(3 * faces.len());
+        let mut sides: FxHashMap<(usize, usize), Sides> = FxHashMap::default();
         for (number, face) in faces.iter().enumerate() {
             for k in 0..3 {
                 let side = (number, face[(k + 2) % 3]);

@@ -11,7 +11,7 @@ and tell their progress.
 
 from ._compare import Comparison, compare
 from ._errors import InputError
-from ._outcome import Finding, Outcome, Statement
+from ._outcome import Finding, Outcome, Reused, Statement
 from ._program import Program, read_program
 from ._run import simulate, sweep, verify
 from ._solve import Roots, solve_system
@@ -24,6 +24,7 @@ __all__ = [
     "InputError",
     "Outcome",
     "Program",
+    "Reused",
     "Roots",
     "Statement",
     "Tool",

@@ -25,7 +25,8 @@ class Finding:
     """Something that a program does and should not."""
 
     kind: str
-    """``collision``, ``rapid``, ``fixture``, ``gouge``, ``excess``, ``spindle``, ``feed`` or ``limit``."""
+    """``collision``, ``rapid``, ``fixture``, ``gouge``, ``excess``, ``spindle``, ``feed``,
+    ``machine`` or ``limit``."""
     line: int | None
     """The line of the program, from 1."""
     text: str | None
@@ -72,7 +73,7 @@ class Statement:
     """Something that was asked for at every time of the program and in every place."""
 
     about: str
-    """``gouge``, ``excess``, ``fixture``, ``holder``, ``collision`` or ``rapid``."""
+    """``gouge``, ``excess``, ``fixture``, ``holder``, ``collision``, ``rapid`` or ``machine``."""
     limit: float
     """The limit, in millimetres."""
     enclosure: tuple[float, float]
@@ -98,6 +99,18 @@ class Statement:
             open=tuple(entry.get("open", ())),
             measure=entry.get("measure", "depth"),
         )
+
+
+@dataclass(frozen=True)
+class Reused:
+    """What a run with a cache had to judge again."""
+
+    again: int
+    """Moves that were judged again."""
+    moves: int
+    """All moves."""
+    notes: list[str]
+    """What is wrong with the cache, if anything: it was then done without."""
 
 
 class Outcome:
@@ -147,6 +160,12 @@ class Outcome:
     def guessed(self) -> list[str]:
         """What nobody says and was guessed, each with its reason."""
         return self._native.notes()[1]
+
+    @property
+    def reused(self) -> Reused | None:
+        """What was known from earlier runs; None without a cache."""
+        reused = self._native.reused()
+        return None if reused is None else Reused(*reused)
 
     @cached_property
     def part(self) -> Dexels:

@@ -28,6 +28,7 @@ def _run(
     target: Solid | None = None,
     options: Mapping[str, Any],
     dialect: Mapping[str, Any],
+    cache: File | None = None,
     progress: Progress | None,
 ) -> _sweepsim.Outcome:
     library, given_tools = _arguments.tools(tools)
@@ -46,7 +47,7 @@ def _run(
         own["target"] = asked_target
     request: dict[str, Any] = {"input": source, "task": task, "program": own}
     request.update((key, value) for key, value in options.items() if value is not None)
-    return _sweepsim.run(json.dumps(request), given_tools, given_stock, given_target, progress)
+    return _sweepsim.run(json.dumps(request), given_tools, given_stock, given_target, cache, progress)
 
 
 def verify(
@@ -64,6 +65,7 @@ def verify(
     directions: str | None = None,
     proof: bool = True,
     moves: bool = False,
+    cache: File | None = None,
     name: str | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
@@ -83,6 +85,8 @@ def verify(
     :param directions: ``"xyz"`` or ``"z"``: the directions of dexels that moves are judged along.
     :param proof: whether to prove what can be proven between the lines.
     :param moves: whether to tell what each move does, as ``moves.csv`` when the outcome is saved.
+    :param cache: a folder that keeps what is found, so that a changed program is judged from the change on only:
+        the same results, sooner. Give a program that is a text the same name each time.
     :param name: what a program given as text is called; its extension tells its format.
     :param progress: called with what is done, of how much (0 if that is not known yet), and the name of the phase.
     :raises InputError: what is given cannot be used, with file, line and column.
@@ -103,6 +107,7 @@ def verify(
             target=target,
             options=options,
             dialect=dialect,
+            cache=cache,
             progress=progress,
         )
     )
@@ -178,4 +183,4 @@ def sweep(
 """
     given = tool if isinstance(tool, Tool) else Tool(tool)
     request = {"input": {"job": {"name": "sweep.ron", "text": job}}, "task": "sweep"}
-    return _sweepsim.run(json.dumps(request), {1: given}, None, None, progress).part()
+    return _sweepsim.run(json.dumps(request), {1: given}, None, None, None, progress).part()

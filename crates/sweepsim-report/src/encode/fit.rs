@@ -57,9 +57,23 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     let frames = course.into_iter().flat_map(|course| &course.frames);
     let of_frames = frames.flat_map(|frame| frame.intervals.iter().flatten().copied());
     let height = Scale::over(heights.chain(of_start).chain(of_frames), HEIGHTS);
-    let (meshes, mesh_arrays) = others::meshes(&scene.tools, &scene.solids);
+    // All deviations have one step.
+    let deviation = layers::deviation_step(scene);
+    let (((meshes, mesh_arrays), (programs, texts)), (mut part, mut normals)) = rayon::join(
+        || {
+            rayon::join(
+                || others::meshes(&scene.tools, &scene.solids),
+                || others::programs(&scene.programs),
+            )
+        },
+        || {
+            rayon::join(
+                || Part::new(&scene.part, deviation, &height),
+                || layers::normals(&scene.part),
+            )
+        },
+    );
     let track = scene.track.as_ref().map(others::track);
-    let (programs, texts) = others::programs(&scene.programs);
     let mut fixed = mesh_arrays;
     if let Some((_, arrays)) = &track {
         fixed.append(arrays);
@@ -68,14 +82,10 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     if let Some((_, arrays)) = &machine {
         fixed.append(arrays);
     }
-    // All deviations have one step.
-    let deviation = layers::deviation_step(scene);
     let mut left_out = Vec::new();
     let fits = |parts: &[&Arrays]| encoded(parts.iter().map(|part| part.bytes.len()).sum()) <= most;
 
     // The part as fine as it is, with normals if they fit.
-    let mut part = Part::new(&scene.part, deviation, &height);
-    let mut normals = layers::normals(&scene.part);
     let mut coarser = None::<DexelLayer>;
     if !fits(&[&fixed, &part.arrays, &normals]) {
         left_out.push("normals of the surface".to_owned());

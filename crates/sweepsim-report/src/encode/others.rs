@@ -2,6 +2,7 @@
 
 use super::arrays::{Arrays, Scale, octahedron};
 use crate::scene::{ProgramText, Solid, SolidKind, ToolPart, ToolShape, Track};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Steps of the clock and of tips: a single-precision number of the page holds each exactly.
@@ -144,14 +145,25 @@ pub(crate) fn meshes(tools: &[ToolPart], solids: &[Solid]) -> (MeshHead, Arrays)
             }
         })
         .collect();
-    let mut arrays = Arrays::default();
     let places = [0, 1, 2].map(|k| Scale::over(meshes.vertices.iter().map(|v| v[k]), u32::from(u16::MAX)));
-    for (k, name) in ["mesh.x", "mesh.y", "mesh.z"].into_iter().enumerate() {
+    let coordinates = |(k, name): (usize, &'static str)| {
         let steps = |v: &[f64; 3]| places[k].steps(v[k], u32::from(u16::MAX)) as u16;
         let own: Vec<u16> = meshes.vertices.iter().map(steps).collect();
+        let mut arrays = Arrays::default();
         arrays.u16(name, &own);
-    }
-    arrays.u32("mesh.corners", &meshes.corners);
+        arrays
+    };
+    let names = [(0, "mesh.x"), (1, "mesh.y"), (2, "mesh.z")];
+    let (along, corners): (Vec<Arrays>, Arrays) = rayon::join(
+        || names.into_par_iter().map(coordinates).collect(),
+        || {
+            let mut arrays = Arrays::default();
+            arrays.u32("mesh.corners", &meshes.corners);
+            arrays
+        },
+    );
+    let mut arrays = Arrays::default();
+    along.iter().chain([&corners]).for_each(|own| arrays.append(own));
     (MeshHead { tools, solids, places }, arrays)
 }
 

@@ -31,6 +31,9 @@ const LISTED: usize = 100;
 /// What goes too deep may have to be lifted so many limits.
 const LIFTS: f64 = 2.5;
 
+/// Every proof is kept for a checker.
+const RECORDED: bool = true;
+
 /// A statement with the moves that were seen to break it.
 struct Proven {
     statement: Statement,
@@ -115,12 +118,6 @@ impl<'a> Proof<'a> {
         LIFTS * self.asked.deepest(obstacle)
     }
 
-    /// Whether proofs are kept for a checker.
-    #[allow(clippy::unused_self)]
-    fn recorded(&self) -> bool {
-        true
-    }
-
     /// An answer to the question that asks a statement of one of its obstacles.
     fn claim(
         &self,
@@ -177,12 +174,13 @@ fn proven(
         let solid = obstacle.triangles.as_ref().map_err(String::clone);
         (
             number,
-            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number))),
+            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number), &proof.known(Some(number)))),
             obstacle.setup,
         )
     };
     let obstacles = proof.asked.obstacles.iter().enumerate();
-    let solids: Vec<_> = obstacles.map(|(number, own)| solid_of(number, own)).collect();
+    let solids = || obstacles.map(|(number, own)| solid_of(number, own)).collect();
+    let (solids, digest): (Vec<_>, String) = rayon::join(solids, || proof.scene.digest());
     let mut all = Vec::new();
     for asked in &proof.asked.statements {
         let own = asked.obstacles.iter().map(|number| &solids[*number]);
@@ -218,10 +216,10 @@ fn proven(
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
     }
-    let certified = claims.iter().any(Option::is_some).then(|| Certified {
-        scene: proof.scene.digest(),
-        claims,
-    });
+    let certified = claims
+        .iter()
+        .any(Option::is_some)
+        .then_some(Certified { scene: digest, claims });
     let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
@@ -251,7 +249,7 @@ fn gouges(
         solid,
         &own,
         &proof.asked.limits(asked),
-        proof.recorded(),
+        RECORDED,
         proof.session.monitor,
     );
     let found = found.ok_or(JobError::Cancelled)?;

@@ -4,7 +4,7 @@
 //! absolute and incremental coordinates, cutter compensation (`RL RR R0`), `RND`, `CHF` between lines, `FMAX`, labels with calls and repeats, `CALL PGM`, `Q` parameters with
 //! `FN 0` to `FN 13` and formulas, datum shift, mirror, rotation, scale and presets (cycles 7, 8, 10, 11, 247), dwell (9), drilling and milling cycles
 //! 200 to 209, 240, 241, 251 to 253, 256, 257 and 262 by `CYCL CALL` or `M99`, `PLANE SPATIAL | EULER | VECTOR | RESET`, and tip control (`M128`, `FUNCTION TCPM`)
-//! with rotary axes or with tool vectors `TX TY TZ`. Moves with `M91` and `M92` are left out: the path breaks.
+//! with rotary axes or with tool vectors `TX TY TZ`. Moves with `M91` are left out where the machine does not know the place, and so are all with `M92`.
 //!
 //! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Other cycles are errors
 //! with their position.

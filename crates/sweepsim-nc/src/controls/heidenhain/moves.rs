@@ -21,11 +21,19 @@ pub(super) struct MoveWords {
     pub(super) normal: [Option<f64>; 3],
     pub(super) tool: [Option<f64>; 3],
     pub(super) rapid: bool,
-    pub(super) machine: bool,
+    /// In machine coordinates (`M91`), or from a point that only the builder knows (`M92`).
+    pub(super) machine: Option<Datum>,
     /// `M140 MB`: the way back along the tool, or all of it.
     pub(super) retract: Option<Option<f64>>,
     /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
     pub(super) side: Option<Option<bool>>,
+}
+
+/// What coordinates of the machine are measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Datum {
+    Machine,
+    Builder,
 }
 
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
@@ -106,7 +114,11 @@ impl Reader<'_> {
                         let value = value(self, &name[1..])?;
                         words.axes[k] = Some((if k < 3 { value * self.unit() } else { value }, relative));
                     } else if let Some(rest) = named("M") {
-                        words.machine |= matches!(rest, "91" | "92");
+                        words.machine = match rest {
+                            "91" => Some(Datum::Machine),
+                            "92" => Some(Datum::Builder),
+                            _ => words.machine,
+                        };
                     } else if let Some(rest) = named("F") {
                         self.track.feed = Some(value(self, rest)?);
                     } else if let Some(rest) = named("R") {
@@ -162,12 +174,8 @@ impl Reader<'_> {
                 )
                 .map_err(whole);
         }
-        if words.machine {
-            self.track
-                .note("moves in machine coordinates are left out: the path breaks here");
-            self.track.turn_unknown(abc).map_err(whole)?;
-            self.track.leave(linear);
-            return Ok(());
+        if let Some(datum) = words.machine {
+            return self.go_from_datum(datum, &words, abc).map_err(whole);
         }
         if abc != self.track.abc && self.frames.tilted() && !self.modes.tip_control {
             let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
@@ -222,6 +230,29 @@ impl Reader<'_> {
         if calls {
             self.call_cycle().map_err(whole)?;
         }
+        Ok(())
+    }
+
+    /// `M91`: in machine coordinates of the spindle's nose. What `M92` is measured from, no machine says here.
+    fn go_from_datum(&mut self, datum: Datum, words: &MoveWords, abc: [f64; 3]) -> Result<(), NcProblem> {
+        let place = self.track.machine_place().filter(|_| datum == Datum::Machine);
+        if let Some((nose, _)) = place {
+            let goal = std::array::from_fn(|k| {
+                let (value, relative) = words.axes[k]?;
+                Some(match k {
+                    3.. => abc[k - 3],
+                    _ if relative => nose[k] + value,
+                    _ => value,
+                })
+            });
+            if self.track.go_to_machine(goal, words.rapid)? {
+                return Ok(());
+            }
+        }
+        self.track
+            .note("moves in machine coordinates are left out: the path breaks here");
+        self.track.turn_unknown(abc)?;
+        self.track.leave([0, 1, 2].map(|k| words.axes[k].is_some()));
         Ok(())
     }
 

@@ -43,7 +43,7 @@ impl Reader<'_> {
             505..=599 => return self.select_offset(value as u32 - 500),
             70 | 700 => self.modes.inch = true,
             71 | 710 => self.modes.inch = false,
-            74 | 75 => action.home = true,
+            code @ (74 | 75) => action.home = Some(code == 75),
             90 => self.modes.absolute = true,
             91 => self.modes.absolute = false,
             93 => self.track.feed_mode = FeedMode::InverseTime,

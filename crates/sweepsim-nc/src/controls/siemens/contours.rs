@@ -13,7 +13,7 @@ impl Reader<'_> {
         let whole = |problem| (problem, words.whole());
         let Some(side) = action.side else { return Ok(()) };
         let Some(left) = side else {
-            if action.home || action.machine || self.without_length() {
+            if action.home.is_some() || action.machine || self.without_length() {
                 self.track.end_compensation(None).map_err(whole)?;
             }
             return Ok(());

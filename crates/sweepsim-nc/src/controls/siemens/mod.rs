@@ -1,7 +1,7 @@
 //! Programs of Siemens Sinumerik 840D.
 //!
 //! Read: `G0 G1 G2 G3` and `CIP` (centres `I J K`, also `AC(…)`; `CR=`, `AR=`, `TURN=`), `G17 G18 G19`, `G90 G91` with `AC IC DC ACP ACN`,
-//! `G70 G71 G700 G710`, work offsets (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153` (left out, the path breaks), programmable frames
+//! `G70 G71 G700 G710`, work offsets (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153 G74 G75` (left out where the machine does not know the place), programmable frames
 //! (`TRANS ROT SCALE MIRROR` and those with `A`), `CYCLE800` axis by axis, `TRAORI`/`TRAFOOF`, tool vectors `A3= B3= C3=`, drilling cycles
 //! `CYCLE81`…`86`, `89`, `840` alone or after `MCALL`, patterns and milling cycles, cutter compensation (`G41 G42 G40`, `G450 G451`, `NORM KONT`, `OFFN`), `RND RNDM CHF CHR`,
 //! `CT`, polar coordinates (`G110 G111 G112`, `AP RP`), tools by number or name, `R` parameters, `DEF`, expressions, jumps, `IF WHILE FOR LOOP
@@ -18,6 +18,7 @@ mod frames;
 mod interpreter;
 mod language;
 mod moves;
+mod places;
 mod state;
 mod variables;
 mod words;

@@ -6,8 +6,8 @@ use super::words::{Action, Meaning, Word, Words};
 use crate::machines::SHORTEST;
 use crate::text::error::{Located, NcProblem};
 
-const LINEAR: [&str; 3] = ["X", "Y", "Z"];
-const ROTARY: [&str; 3] = ["A", "B", "C"];
+pub(super) const LINEAR: [&str; 3] = ["X", "Y", "Z"];
+pub(super) const ROTARY: [&str; 3] = ["A", "B", "C"];
 const VECTOR: [&str; 3] = ["A3", "B3", "C3"];
 
 impl Reader<'_> {
@@ -47,38 +47,24 @@ impl Reader<'_> {
                     .end_compensation(None)
                     .map_err(|problem| (problem, words.whole()))?;
             }
-            if action.home {
-                return Err((
-                    NcProblem::syntax("G74 or G75 without an axis: expected X, Y, Z …"),
-                    0..0,
-                ));
-            }
-            return Ok(());
+            return match action.home {
+                Some(second) => self.go_home(second, words, action),
+                None => Ok(()),
+            };
         };
         let span = first.span.clone();
         let here = |problem| (problem, span.clone());
         let rotary = moves(ROTARY).contains(&true);
         let abc = self.angles(words)?;
-        if action.home {
-            self.track
-                .note("moves to the machine's fixed points are left out: the path breaks here");
-            let zeroed: [f64; 3] = std::array::from_fn(|k| {
-                if words.get(ROTARY[k]).is_some() {
-                    0.0
-                } else {
-                    self.track.abc[k]
-                }
-            });
-            self.track.turn_unknown(zeroed).map_err(here)?;
-            self.track.leave(linear);
-            return Ok(());
+        if let Some(second) = action.home {
+            return self.go_home(second, words, action);
         }
-        if action.machine || self.without_length() {
-            self.track.note(if action.machine {
-                "moves in machine coordinates are left out: the path breaks here"
-            } else {
-                "moves without the tool's length (D0) are left out: the path breaks here"
-            });
+        if action.machine {
+            return self.go_in_machine_coordinates(words, abc);
+        }
+        if self.without_length() {
+            self.track
+                .note("moves without the tool's length (D0) are left out: the path breaks here");
             self.track.turn_unknown(abc).map_err(here)?;
             self.track.leave(linear);
             return Ok(());
@@ -159,7 +145,7 @@ impl Reader<'_> {
         Ok(Some(self.track.frame().direction(vector)))
     }
 
-    fn angles(&self, words: &Words) -> Result<[f64; 3], Located> {
+    pub(super) fn angles(&self, words: &Words) -> Result<[f64; 3], Located> {
         let mut abc = self.track.abc;
         for (k, name) in ROTARY.into_iter().enumerate() {
             let Some(word) = words.get(name) else { continue };

@@ -67,8 +67,10 @@ pub(super) struct Action {
     pub operation: Option<(Operation, Range<usize>)>,
     /// In machine coordinates: SUPA, G53, G153.
     pub machine: bool,
-    /// To fixed points or the reference point: G74, G75.
-    pub home: bool,
+    /// To the reference point (G74), or to a fixed point (G75): `true`.
+    pub home: Option<bool>,
+    /// The number of the fixed point: FP.
+    pub fixed_point: Option<f64>,
     pub dwell: bool,
     /// Words that are no coordinates: G25, G26, oriented spindle stops.
     pub other: bool,
@@ -100,6 +102,10 @@ impl Reader<'_> {
                     let value = value.value(&|name| self.lookup(name))?;
                     if let ("OFFN", Value::Number(allowance)) = (name.as_str(), &value) {
                         self.modes.allowance = allowance * self.modes.unit();
+                        continue;
+                    }
+                    if let ("FP", Value::Number(number)) = (name.as_str(), &value) {
+                        action.fixed_point = Some(*number);
                         continue;
                     }
                     if matches!(

@@ -3,5 +3,3 @@
 mod arcs;
 mod places;
 mod turns;
-
-pub(crate) use places::LETTERS;

@@ -14,7 +14,7 @@ const SAME: f64 = 1e-9;
 /// Places of X, Y, Z in machine coordinates of the spindle's nose, and of A, B, C in degrees.
 pub(crate) type Goal = [Option<f64>; 6];
 
-pub(crate) const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
 impl Track {
     /// Has a tool in the spindle from now on.
@@ -155,6 +155,29 @@ impl Track {
         self.stand(to);
         (self.joined, self.places.stands) = (joined, false);
         moved.map(|()| true)
+    }
+
+    /// Goes to the homes of the axes that are named, or to their second homes. Whether it knows all of these: else nothing is done.
+    pub fn go_home(&mut self, second: bool, named: impl Fn(char) -> bool) -> Result<bool, NcProblem> {
+        let Some(machine) = self.driver.kinematics() else {
+            return Ok(false);
+        };
+        let homes = LETTERS.map(|letter| machine.home(letter, second));
+        let own: Vec<char> = machine.rotary().map(|axis| axis.letter).collect();
+        let there = |letter: &char| "XYZ".contains(*letter) || own.contains(letter);
+        let asked = LETTERS.map(|letter| there(&letter) && named(letter));
+        if (0..6).any(|k| asked[k] && homes[k].is_none()) {
+            return Ok(false);
+        }
+        self.go_to_machine(std::array::from_fn(|k| homes[k].filter(|_| asked[k])), true)
+    }
+
+    /// Where the axes are in machine coordinates, and how far the tip is from the spindle's nose. `None` if that is not known.
+    pub fn machine_place(&self) -> Option<([f64; 6], f64)> {
+        let machine = self.driver.kinematics().filter(|machine| machine.has_places())?;
+        let nose = self.nose()?;
+        let ([x, y, z], [a, b, c]) = (nose.xyz, nose.abc);
+        Some(([x, y, z, a, b, c], machine.tool_length(self.tool)))
     }
 
     /// Goes to where tools are changed, and stands there.

@@ -1,7 +1,7 @@
 //! Codes that set coordinates instead of moving to them.
 
 use super::interpreter::Reader;
-use crate::drive::{LETTERS, Placed, WorkOffset};
+use crate::drive::{Placed, WorkOffset};
 use crate::gcode::codes::{Code, MotionMode};
 use crate::gcode::offsets::{EXTENDED, known};
 use crate::gcode::syntax::block::Block;
@@ -305,22 +305,6 @@ impl Reader {
         self.reframe(change)
     }
 
-    /// Goes to the homes of the axes that are named, if the machine is known and has all of them.
-    fn go_home(&mut self, which: usize, named: impl Fn(char) -> bool) -> Result<bool, NcProblem> {
-        let Some(machine) = self.track.driver.kinematics() else {
-            return Ok(false);
-        };
-        let homes = LETTERS.map(|letter| machine.home(letter, which == 1));
-        let own: Vec<char> = machine.rotary().map(|axis| axis.letter).collect();
-        let there = |letter: &char| "XYZ".contains(*letter) || own.contains(letter);
-        let asked = LETTERS.map(|letter| there(&letter) && named(letter));
-        if (0..6).any(|k| asked[k] && homes[k].is_none()) {
-            return Ok(false);
-        }
-        self.track
-            .go_to_machine(std::array::from_fn(|k| homes[k].filter(|_| asked[k])), true)
-    }
-
     /// G28 and G30: over the programmed point to the machine's home.
     fn home(&mut self, which: usize, block: &Block) -> Result<(), NcProblem> {
         self.refuse_compensation("a move to the machine's home")?;
@@ -332,7 +316,7 @@ impl Reader {
             self.go(MotionMode::Rapid, block)?;
         }
         let named = |k: usize| !any || words[k].is_some();
-        if self.go_home(which, |letter| !any || block.has(letter))? {
+        if self.track.go_home(which == 1, |letter| !any || block.has(letter))? {
             return Ok(());
         }
         for (angle, letter) in self.track.abc.iter_mut().zip(['A', 'B', 'C']) {

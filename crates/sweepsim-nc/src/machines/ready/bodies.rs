@@ -92,8 +92,10 @@ pub(super) fn with_bodies(mut machine: MachineDescription, words: &str) -> Resul
     } else {
         Carries::Tool
     };
-    let linear = |letter, limits, carries| {
-        let mut axis = LinearAxis::new(letter);
+    // Those that are there have speeds and accelerations.
+    let mut rates = std::mem::take(&mut machine.linear).into_iter();
+    let mut linear = |letter, limits, carries| {
+        let mut axis = rates.next().unwrap_or_else(|| LinearAxis::new(letter));
         (axis.limits, axis.carries, axis.home) = (Some(limits), carries, Some(0.0));
         axis
     };

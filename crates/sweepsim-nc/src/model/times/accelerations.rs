@@ -10,7 +10,8 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 use sweepsim_motion::{TipArc, TipCourse};
 
 use super::MoveTime;
-use super::profile::{Profile, Stretch};
+use super::profile::Profile;
+use super::stretch::Stretch;
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{Event, EventKind};
 use crate::model::program::{Program, ProgramPose};
@@ -46,7 +47,7 @@ impl<'a> Accelerating<'a> {
     pub fn new(program: &'a Program, machine: &'a Kinematics) -> Option<Self> {
         accelerates(machine).then(|| Self {
             axes: Dynamics::new(machine),
-            chain: Chain::new(machine.description().smoothing),
+            chain: Chain::new(machine),
             events: program.events.iter().peekable(),
             next: 1,
         })
@@ -103,6 +104,7 @@ pub(super) struct Way {
     /// The unit tangents at its start and its end; `None` if the axes rest there.
     tangents: Option<[Vector6<f64>; 2]>,
     acceleration: f64,
+    jerk: f64,
     /// The largest speed where it is curved.
     speed: f64,
 }
@@ -115,9 +117,11 @@ struct Chain {
 }
 
 impl Chain {
-    fn new(smoothing: f64) -> Self {
+    fn new(machine: &Kinematics) -> Self {
+        let mut linear = machine.linear().iter();
+        let has_jerk = linear.any(|axis| axis.jerk.is_some()) || machine.rotary().any(|axis| axis.jerk.is_some());
         Self {
-            profile: Profile::new(smoothing),
+            profile: Profile::new(machine.description().smoothing, has_jerk),
             last: None,
         }
     }
@@ -132,6 +136,7 @@ impl Chain {
             speed: way.speed.min(way.length / full[0]),
             corner,
             acceleration: way.acceleration,
+            jerk: way.jerk,
             full,
         });
         self.last = way.tangents.map(|[_, last]| (last, way.length));
@@ -145,23 +150,29 @@ struct Dynamics<'a> {
     directions: [&'a Matrix3<f64>; 2],
     /// Of X, Y, Z, A, B, C: infinite where the machine does not say it.
     accelerations: Vector6<f64>,
+    jerks: Vector6<f64>,
     deviation: f64,
 }
 
 impl<'a> Dynamics<'a> {
     fn new(machine: &'a Kinematics) -> Self {
-        let linear = machine.linear().iter().map(|axis| (axis.letter, axis.acceleration));
-        let rotary = machine.rotary().map(|axis| (axis.letter, axis.acceleration));
-        let mut accelerations = Vector6::repeat(f64::INFINITY);
-        for (letter, acceleration) in linear.chain(rotary) {
-            if let (Some(k), Some(acceleration)) = ("XYZABC".find(letter), acceleration) {
-                accelerations[k] = acceleration;
+        let linear = machine.linear().iter();
+        let linear = linear.map(|axis| (axis.letter, [axis.acceleration, axis.jerk]));
+        let rotary = machine
+            .rotary()
+            .map(|axis| (axis.letter, [axis.acceleration, axis.jerk]));
+        let [mut accelerations, mut jerks] = [Vector6::repeat(f64::INFINITY); 2];
+        for (letter, [acceleration, jerk]) in linear.chain(rotary) {
+            if let Some(k) = "XYZABC".find(letter) {
+                accelerations[k] = acceleration.unwrap_or(f64::INFINITY);
+                jerks[k] = jerk.unwrap_or(f64::INFINITY);
             }
         }
         Self {
             machine,
             directions: machine.directions(),
             accelerations,
+            jerks,
             deviation: machine.description().corner_deviation.unwrap_or(CORNER_DEVIATION),
         }
     }
@@ -174,16 +185,9 @@ impl<'a> Dynamics<'a> {
         )
     }
 
-    /// The largest acceleration along the path by the shares of the axes in it. An axis that stands still bounds nothing.
+    /// The largest acceleration along the path by the shares of the axes in it.
     fn most(&self, shares: &Vector6<f64>) -> f64 {
-        let moving = self
-            .accelerations
-            .iter()
-            .zip(shares)
-            .filter(|(_, share)| **share != 0.0);
-        moving
-            .map(|(most, share)| most / share.abs())
-            .fold(f64::INFINITY, f64::min)
+        least(&self.accelerations, shares)
     }
 
     /// The largest square of the speed at a corner between two unit tangents; `half` is half the length of the shorter move.
@@ -221,10 +225,12 @@ impl<'a> Dynamics<'a> {
     fn straight(&self, whole: &Vector6<f64>) -> Way {
         let length = whole.norm();
         let tangent = whole / length;
+        let shares = self.shares(&tangent);
         Way {
             length,
             tangents: Some([tangent; 2]),
-            acceleration: self.most(&self.shares(&tangent)),
+            acceleration: self.most(&shares),
+            jerk: least(&self.jerks, &shares),
             speed: f64::INFINITY,
         }
     }
@@ -260,15 +266,25 @@ impl<'a> Dynamics<'a> {
             true => plane[k],
             false => flat * plane[k] + (rise * inverse.row(k).dot(&up.transpose())).abs(),
         });
+        let along = joined(&along, &(turn / length));
         let (sin, cos) = arc.angle().abs().sin_cos();
         let tangents = [side, side * cos - out * sin].map(|v| joined(&(v * flat + up * rise), &Vector3::zeros()));
         Way {
             length,
             tangents: (!turns).then_some(tangents),
-            acceleration: self.most(&joined(&along, &(turn / length))),
+            acceleration: self.most(&along),
+            jerk: least(&self.jerks, &along),
             speed: (self.most(&joined(&plane, &Vector3::zeros())) * radius).sqrt() / flat,
         }
     }
+}
+
+/// The largest value along the path by what each axis can do and its share. An axis that stands still bounds nothing.
+fn least(axes: &Vector6<f64>, shares: &Vector6<f64>) -> f64 {
+    let moving = axes.iter().zip(shares).filter(|(_, share)| **share != 0.0);
+    moving
+        .map(|(most, share)| most / share.abs())
+        .fold(f64::INFINITY, f64::min)
 }
 
 fn joined(xyz: &Vector3<f64>, abc: &Vector3<f64>) -> Vector6<f64> {

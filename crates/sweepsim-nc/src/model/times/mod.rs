@@ -1,13 +1,17 @@
 //! How long each move of a program takes.
 
 mod accelerations;
+mod hills;
 mod joints;
 mod profile;
+mod ramps;
+mod stretch;
 
 pub use accelerations::CORNER_DEVIATION;
 
 use joints::Joints;
 use nalgebra::Vector3;
+use ramps::{Leg, Limits};
 
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{Event, EventKind, Spindle};
@@ -156,9 +160,20 @@ fn assumed_rapid(from: &ProgramPose, to: &ProgramPose) -> f64 {
     60.0 * (length(from, to) / RAPID_SPEED).max(turn(from, to) / RAPID_TURN)
 }
 
-/// The axes that move: the way of each in mm or degrees, its speed per minute and acceleration per s², and whether the speed is assumed.
+/// An axis that moves.
+struct Moving {
+    /// In mm or degrees.
+    way: f64,
+    /// Per second.
+    speed: f64,
+    limits: Limits,
+    /// Whether the speed is assumed.
+    assumed: bool,
+}
+
+/// The axes that move.
 struct Axes {
-    moving: Vec<(f64, f64, Option<f64>, bool)>,
+    moving: Vec<Moving>,
     /// Over how many seconds speeds are averaged, if any of them accelerates.
     smoothing: f64,
 }
@@ -168,18 +183,34 @@ impl Axes {
         let linear = machine.linear().iter().map(|axis| {
             let k = "XYZ".find(axis.letter).unwrap_or(0);
             let acceleration = axis.rapid_acceleration.or(axis.acceleration);
-            (to.xyz[k] - from.xyz[k], axis.speed, RAPID_SPEED, acceleration)
+            (
+                to.xyz[k] - from.xyz[k],
+                axis.speed,
+                RAPID_SPEED,
+                [acceleration, axis.jerk],
+            )
         });
         let rotary = machine.rotary().map(|axis| {
             let k = "ABC".find(axis.letter).unwrap_or(0);
-            (to.abc[k] - from.abc[k], axis.speed, RAPID_TURN, axis.acceleration)
+            (
+                to.abc[k] - from.abc[k],
+                axis.speed,
+                RAPID_TURN,
+                [axis.acceleration, axis.jerk],
+            )
         });
         let all = linear.chain(rotary).filter(|(way, ..)| *way != 0.0);
-        let moving = all.map(|(way, speed, other, acceleration)| {
-            (way.abs(), speed.unwrap_or(other), acceleration, speed.is_none())
+        let moving = all.map(|(way, speed, other, [acceleration, jerk])| Moving {
+            way: way.abs(),
+            speed: speed.unwrap_or(other) / 60.0,
+            limits: Limits {
+                acceleration: acceleration.unwrap_or(f64::INFINITY),
+                jerk: jerk.unwrap_or(f64::INFINITY),
+            },
+            assumed: speed.is_none(),
         });
         let moving: Vec<_> = moving.collect();
-        let accelerates = moving.iter().any(|axis| axis.2.is_some());
+        let accelerates = moving.iter().any(|axis| axis.limits.acceleration < f64::INFINITY);
         Self {
             moving,
             smoothing: if accelerates {
@@ -192,23 +223,31 @@ impl Axes {
 
     /// From rest to rest, each as fast as it can; in seconds.
     fn rapid(self) -> (f64, bool) {
-        let seconds = |(way, speed, acceleration, _): &(f64, f64, Option<f64>, bool)| {
-            let speed = speed / 60.0;
-            match *acceleration {
-                None => way / speed,
-                // It never reaches its speed,
-                Some(a) if way * a <= speed * speed => 2.0 * (way / a).sqrt(),
-                // or does between two ramps of v/a seconds, which cover v²/a together.
-                Some(a) => way / speed + speed / a,
-            }
-        };
-        let longest = self.moving.iter().map(seconds).fold(0.0, f64::max);
-        (longest + self.smoothing, self.moving.iter().any(|axis| axis.3))
+        let longest = self.moving.iter().map(Moving::seconds).fold(0.0, f64::max);
+        (longest + self.smoothing, self.moving.iter().any(|axis| axis.assumed))
     }
 
     /// What the slowest axis of those with a known speed needs, in seconds.
     fn at_full_speed(&self) -> f64 {
-        let known = self.moving.iter().filter(|axis| !axis.3);
-        known.map(|(way, speed, ..)| 60.0 * way / speed).fold(0.0, f64::max)
+        let known = self.moving.iter().filter(|axis| !axis.assumed);
+        known.map(|axis| axis.way / axis.speed).fold(0.0, f64::max)
+    }
+}
+
+impl Moving {
+    /// From rest to rest.
+    fn seconds(&self) -> f64 {
+        let Self { way, speed, limits, .. } = self;
+        if limits.jerk < f64::INFINITY {
+            return Leg::new([0.0; 2], *speed, *way, [*limits; 2]).seconds();
+        }
+        let a = limits.acceleration;
+        if way * a <= speed * speed {
+            // It never reaches its speed,
+            2.0 * (way / a).sqrt()
+        } else {
+            // or does between two ramps of v/a seconds, which cover v²/a together.
+            way / speed + speed / a
+        }
     }
 }

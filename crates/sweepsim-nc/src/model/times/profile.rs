@@ -5,20 +5,8 @@ use std::ops::Range;
 use sweepsim_motion::PackedRows;
 
 use super::MoveTime;
-
-/// A stretch of a path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch {
-    pub length: f64,
-    /// The largest speed on it,
-    pub speed: f64,
-    /// and the largest square of the speed at its start, where the path has a corner.
-    pub corner: f64,
-    /// The largest change of the speed; may be infinite.
-    pub acceleration: f64,
-    /// How long its move takes at full speed, in seconds, and the rest before it.
-    pub full: [f64; 2],
-}
+use super::hills;
+use super::stretch::Stretch;
 
 /// How long stretches take, where the speed is nowhere larger than it may be and changes as fast as it may.
 ///
@@ -29,17 +17,21 @@ pub(super) struct Stretch {
 /// A control that averages speeds over a time `T` comes down to a speed `u` between stretches of larger speeds, up to
 /// `P` on the slower of them, only if it stays at `u` for `T`: that takes `T (1 − u/P)` longer, and `T` from rest to
 /// rest. It is counted in the stretch that begins there.
+///
+/// Where the jerk is bounded, the course is that of [`hills`], and no time is known before the rest.
 #[derive(Debug, Default)]
 pub(super) struct Profile {
     /// Over how many seconds speeds are averaged.
     smoothing: f64,
     /// The largest speed on the stretch whose time was given last, if nothing rested since.
     peak: Option<f64>,
-    packed: PackedRows<6>,
+    packed: PackedRows<7>,
     /// The last stretches.
     open: Vec<Stretch>,
     /// The square of the speed at the start of the first of them.
     entry: f64,
+    /// Whether the jerk may be bounded.
+    has_jerk: bool,
     /// So many were left when it was last looked for those that are settled.
     left: usize,
 }
@@ -52,10 +44,11 @@ const OPEN: usize = 1 << 14;
 const PART: usize = 1 << 11;
 
 impl Profile {
-    /// Of a control that averages speeds over so many seconds.
-    pub fn new(smoothing: f64) -> Self {
+    /// Of a control that averages speeds over so many seconds, with axes whose jerk may be bounded.
+    pub fn new(smoothing: f64, has_jerk: bool) -> Self {
         Self {
             smoothing,
+            has_jerk,
             ..Self::default()
         }
     }
@@ -76,7 +69,7 @@ impl Profile {
     /// Gives the times of the first moves, as far as nothing that follows can change them; mostly none.
     pub fn settled(&mut self, each: impl FnMut(MoveTime)) {
         // It takes as long as there are stretches.
-        if self.len() < LOOK + 2 * self.left {
+        if self.has_jerk || self.len() < LOOK + 2 * self.left {
             return;
         }
         let last = self.open.last().map_or(0.0, |stretch| stretch.speed);
@@ -102,8 +95,32 @@ impl Profile {
 
     /// Gives the times of all moves, after which there is a rest.
     pub fn rest(&mut self, each: impl FnMut(MoveTime)) {
-        self.take(self.len(), 0.0, each);
+        if self.has_jerk {
+            self.pass(each);
+        } else {
+            self.take(self.len(), 0.0, each);
+        }
         (self.entry, self.left, self.peak) = (0.0, 0, None);
+    }
+
+    /// Takes all stretches away, whose jerk may be bounded.
+    fn pass(&mut self, mut each: impl FnMut(MoveTime)) {
+        let count = self.len();
+        let Stretches { stretches, .. } = self.stretches(0..count);
+        let mut squares = vec![0.0; count + 1];
+        for k in (0..count).rev() {
+            let before = k.checked_sub(1).map(|before| &stretches[before]);
+            squares[k] = self.to_brake_to(before, &stretches[k], squares[k + 1]);
+        }
+        for (k, stretch) in stretches.iter().enumerate() {
+            squares[k + 1] = squares[k + 1].min(squares[k] + stretch.gain());
+        }
+        for (stretch, passed) in stretches.iter().zip(hills::passed(&stretches, &squares)) {
+            each(stretch.time(passed.seconds, self.dip(passed.start, passed.peak)));
+            self.peak = Some(passed.peak);
+        }
+        self.packed = PackedRows::default();
+        self.open.clear();
     }
 
     /// The largest square of the speed at the start of a stretch from which it can brake to that at its end.
@@ -151,7 +168,7 @@ impl Profile {
                 squares[k + 1] = squares[k + 1].min(squares[k] + stretch.gain());
                 let ends = [squares[k], squares[k + 1]];
                 let peak = stretch.peak(ends);
-                each(stretch.time(ends, self.dip(squares[k].sqrt(), peak)));
+                each(stretch.time(stretch.seconds(ends), self.dip(squares[k].sqrt(), peak)));
                 self.peak = Some(peak);
             }
             start = squares.pop();
@@ -201,72 +218,6 @@ impl Stretches {
     }
 }
 
-impl Stretch {
-    /// The change of the square of the speed along it.
-    fn gain(&self) -> f64 {
-        2.0 * self.acceleration * self.length
-    }
-
-    fn row(self) -> [f64; 6] {
-        let Self {
-            length,
-            speed,
-            corner,
-            acceleration,
-            full: [seconds, rest],
-        } = self;
-        [length, speed, corner, acceleration, seconds, rest]
-    }
-
-    fn of_row([length, speed, corner, acceleration, seconds, rest]: [f64; 6]) -> Self {
-        Self {
-            length,
-            speed,
-            corner,
-            acceleration,
-            full: [seconds, rest],
-        }
-    }
-
-    /// The time of its move, by the squares of the speeds at its ends, and so many seconds more.
-    fn time(&self, squares: [f64; 2], more: f64) -> MoveTime {
-        let [full, rest] = self.full;
-        MoveTime {
-            // Rounding makes no move faster than at full speed.
-            seconds: Some(full.max(self.seconds(squares)) + more),
-            rest,
-            assumed: false,
-        }
-    }
-
-    /// How long the ramps between its ends and a speed are together.
-    fn ramps(&self, squares: [f64; 2], speed: f64) -> f64 {
-        let ramp = |square: &f64| (speed * speed - square) / (2.0 * self.acceleration);
-        squares.iter().map(ramp).sum()
-    }
-
-    /// The largest speed on it, by the squares of those at its ends.
-    fn peak(&self, squares: [f64; 2]) -> f64 {
-        if self.acceleration == f64::INFINITY || self.ramps(squares, self.speed) <= self.length {
-            return self.speed;
-        }
-        // The ramps meet before, at v² = w² + 2 a l from both sides, with lengths l that make up the stretch.
-        let square = 0.5 * (squares[0] + squares[1]) + self.acceleration * self.length;
-        square.max(squares[0]).max(squares[1]).sqrt()
-    }
-
-    /// How long it takes, by the squares of the speeds at its ends.
-    fn seconds(&self, squares: [f64; 2]) -> f64 {
-        if self.acceleration == f64::INFINITY {
-            return self.length / self.speed;
-        }
-        let peak = self.peak(squares);
-        let rest = (self.length - self.ramps(squares, self.speed)).max(0.0);
-        let change: f64 = squares.iter().map(|square| peak - square.sqrt()).sum();
-        change / self.acceleration + if rest > 0.0 { rest / peak } else { 0.0 }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,6 +233,7 @@ mod tests {
                 speed,
                 corner,
                 acceleration,
+                jerk: f64::INFINITY,
                 full: [length / speed, rest],
             },
         )
@@ -314,7 +266,7 @@ mod tests {
 
     /// One after the other, and the most stretches that were kept.
     fn passed(stretches: &[Stretch], smoothing: f64) -> (Vec<MoveTime>, usize) {
-        let (mut profile, mut times, mut most) = (Profile::new(smoothing), Vec::new(), 0);
+        let (mut profile, mut times, mut most) = (Profile::new(smoothing, false), Vec::new(), 0);
         for stretch in stretches {
             profile.push(*stretch);
             most = most.max(profile.len());
@@ -357,6 +309,7 @@ mod tests {
                 speed: length / seconds,
                 corner: f64::INFINITY,
                 acceleration: 100.0,
+                jerk: f64::INFINITY,
                 full: [seconds, 0.0],
             });
             profile.settled(|_| ());

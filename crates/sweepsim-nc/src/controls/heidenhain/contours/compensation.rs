@@ -16,7 +16,7 @@ impl Reader<'_> {
         if self.modes.compensated == Some(left) && self.track.compensates() {
             return Ok(());
         }
-        if !matches!(kind, "L" | "LP") || words.rapid && words.machine {
+        if !matches!(kind, "L" | "LP") || words.rapid && words.machine.is_some() {
             return Err(NcProblem::syntax(
                 "cutter compensation begins with a straight line: expected RL or RR in L or LP before this block",
             ));
