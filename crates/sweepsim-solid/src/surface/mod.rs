@@ -72,9 +72,8 @@ impl Surface {
         let turned = |a: [f64; 3], b: [f64; 3]| Vector3::from(a).cross(&Vector3::from(b)).norm();
         match (self, other) {
             (Self::Analytic(a), Self::Analytic(b)) => match (*a, *b) {
-                (Plane { origin, normal }, Plane { normal: m, .. }) => {
+                (Plane { normal, .. }, Plane { normal: m, .. }) => {
                     let off = |s: &Self| s.at(near).map_or(f64::INFINITY, |(d, _)| d.abs());
-                    let _ = origin;
                     off(self).max(off(other)) + turned(normal, m) * size <= limit
                 }
                 (
