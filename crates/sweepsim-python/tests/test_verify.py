@@ -128,9 +128,13 @@ def test_a_notebook_shows_picture_and_findings(facing: str) -> None:
 
 
 def test_a_changed_program_is_judged_from_the_change_on(tmp_path: Path) -> None:
-    lines = ["G21 G90", "T1 M6", "S8000 M3", "G0 X-8 Y0 Z5", "G0 Z-1"]
-    lines += [f"G1 X{48 if row % 2 == 0 else -8} F600\nG1 Y{row}" for row in range(20)]
-    text = "\n".join([*lines, "G0 Z5", "M30", ""])
+    def program(depth: float) -> str:
+        """Twenty rows, of which the eighteenth is this deep."""
+        depths = [depth if row == 17 else 1 for row in range(20)]
+        rows = [f"G0 X-8 Y{row}\nG1 Z-{z} F600\nG1 X48\nG0 Z5" for row, z in enumerate(depths)]
+        return "\n".join(["G21 G90", "T1 M6", "S8000 M3", "G0 Z5", *rows, "M30", ""])
+
+    text, changed = program(1), program(1.5)
 
     def judged(program: str, cache: Path | None) -> sweepsim.Outcome:
         target = box([0, 0, -10], [40, 20, -1.2])
@@ -142,8 +146,6 @@ def test_a_changed_program_is_judged_from_the_change_on(tmp_path: Path) -> None:
     assert first.reused is not None and first.reused.again == first.reused.moves and first.reused.notes == []
     again = judged(text, tmp_path).reused
     assert again is not None and again.again == 0
-    changed = text.replace("G1 Y17", "G1 Y17 Z-0.9")
-    assert changed != text
     second, without = judged(changed, tmp_path), judged(changed, None)
     assert without.reused is None
     assert second.reused is not None and 0 < second.reused.again < second.reused.moves / 2

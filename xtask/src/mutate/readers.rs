@@ -6,11 +6,12 @@ use std::fmt::Display;
 use std::fs;
 use std::io;
 use std::path::Path;
-use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriangleSoup};
+use sweepsim_dexel::{AnalyticSurface, Dexels, Grid, Mesh, Stock, SurfaceEnd, TriDexels, TriangleSoup};
 use sweepsim_formats as formats;
 use sweepsim_formats::Job;
 use sweepsim_nc as nc;
 use sweepsim_nc::{Machine, ReadOptions};
+use sweepsim_solid::{Solid, SolidOptions, StepHeader, Surface, write_step};
 
 /// A reader.
 pub(super) struct Reader {
@@ -96,11 +97,10 @@ pub(super) const READERS: [Reader; 17] = [
         own: || fs::read(bracket()).into_iter().collect(),
         read: |file| of_text(file, |text| said(Job::parse(text, &bracket()))),
     },
-    // Written by nobody here: from shared data alone.
     Reader {
         name: "step",
         endings: &["step", "stp"],
-        own: Vec::new,
+        own: || made(step),
         read: |file| said(formats::parse_step(file, 0.1)),
     },
     Reader {
@@ -160,6 +160,42 @@ fn text(file: &str) -> Vec<Vec<u8>> {
 fn made(write: impl Fn(&mut Vec<u8>) -> io::Result<()>) -> Vec<Vec<u8>> {
     let mut file = Vec::new();
     write(&mut file).map(|()| file).into_iter().collect()
+}
+
+/// A block with a ball cut out of one of its edges.
+fn step(to: &mut Vec<u8>) -> io::Result<()> {
+    let (low, high) = ([0.0; 3], [6.0, 4.0, 3.0]);
+    let ball = Stock::Ball {
+        centre: [3.0, 0.0, 3.0],
+        radius: 1.75,
+    };
+    let part = Stock::Difference(Box::new(Stock::Block { min: low, max: high }), vec![ball]);
+    let dexels = TriDexels::new([-0.5; 3], [6.5, 4.5, 3.5], [28, 20, 16], &part).map_err(io::Error::other)?;
+    let (mesh, ends) = dexels.surface_with_ends().map_err(io::Error::other)?;
+    let side = |origin: [f64; 3], axis: usize| {
+        let mut normal = [0.0; 3];
+        normal[axis] = 1.0;
+        AnalyticSurface::Plane { origin, normal }
+    };
+    let sides = (0..3).flat_map(|axis| [side(low, axis), side(high, axis)]);
+    let round = AnalyticSurface::Sphere {
+        centre: [3.0, 0.0, 3.0],
+        radius: 1.75,
+    };
+    let surfaces: Vec<Surface> = sides.chain([round]).map(Surface::Analytic).collect();
+    let solid = Solid::new(
+        &mesh,
+        &ends,
+        &|_: &SurfaceEnd| surfaces.clone(),
+        SolidOptions::new(1e-6, 0.25),
+    );
+    let solid = solid.map_err(io::Error::other)?;
+    let header = StepHeader {
+        name: "block".into(),
+        program: "xtask".into(),
+        uncertainty: 1e-6,
+    };
+    write_step(&solid, &header, to)
 }
 
 fn block() -> TriangleSoup {

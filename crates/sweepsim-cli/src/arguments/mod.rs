@@ -133,7 +133,7 @@ pub(crate) struct RunOptions {
     /// The output folder [default: out/NAME].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Which outputs to write [default: all but binary].
+    /// Which outputs to write [default: dexels, mesh, picture, report, certificate].
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub only: Vec<Output>,
     /// How crossings are found. All methods give the same dexels.
