@@ -94,7 +94,7 @@ fn compare(folder: &Workdir, more: &[&str], counts: &[usize], status: i32) -> Re
 fn shards_find_what_one_run_finds() {
     let folder = faulty();
     let more = ["--moves", "--only", "dexels,mesh,picture,report,binary,certificate"];
-    let report = compare(&folder, &more, &[6], 1);
+    let report = compare(&folder, &more, &[4], 1);
     let findings = report.findings.unwrap();
     for (kind, body) in [
         ("rapid", None),
