@@ -91,6 +91,9 @@ impl Solid {
                 net = Net::new(Cow::Owned(mesh), Cow::Owned(ends))?;
                 continue;
             }
+            if round < ROUNDS && free_rough(&net, &groups, &mut labels, &placed, &made, 2.0 * options.chord) > 0 {
+                continue;
+            }
             let open = open_edges(&placed, &made);
             if open == 0 {
                 return Ok(Self::of(&net, &groups, &labels, placed, made));
@@ -113,6 +116,27 @@ impl Solid {
             summary,
         }
     }
+}
+
+/// Takes the surface from faces with an edge that is farther from them than readers take, and says from how many ends.
+fn free_rough(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, made: &Faces, most: f64) -> usize {
+    let mut freed = 0;
+    for group in (0..groups.count()).filter(|group| !groups.is_free(*group)) {
+        let Some(face) = made.of_group[group].map(|face| &made.all[face as usize]) else {
+            continue;
+        };
+        let edges = face.loops.iter().flatten();
+        let mut edges = edges.filter_map(|(edge, _)| placed.edges[*edge as usize].as_ref());
+        let off = |edge: &Edge| (0..=8).any(|k| face.surface.off(edge.at(f64::from(k) / 8.0)) > most);
+        if edges.any(off) {
+            for triangle in groups.triangles(group) {
+                let label = &mut labels.of[net.end_of(*triangle as usize) as usize];
+                freed += usize::from(*label != FREE);
+                *label = FREE;
+            }
+        }
+    }
+    freed
 }
 
 /// How many edges are not passed once each way.

@@ -5,13 +5,23 @@ use std::path::Path;
 use sweepsim_formats::parse_step;
 use sweepsim_job::{Output, Request, Task};
 
-/// A pocket, and a groove for five axes, which stays triangles.
+/// On coarse lines, faces with edges too far from them for readers become triangles.
 #[test]
-fn quickstart() {
+fn quickstart_on_coarse_lines() {
+    quickstart([60, 40]);
+}
+
+#[test]
+fn quickstart_on_usual_lines() {
+    quickstart([75, 50]);
+}
+
+/// A pocket, and a groove for five axes, which stays triangles.
+fn quickstart(cells: [usize; 2]) {
     let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/jobs/quickstart.ron");
     let request = Request::from_file(job)
         .task(Task::Simulate)
-        .cells([75, 50])
+        .cells(cells)
         .outputs([Output::Step]);
     let outcome = request.plan().unwrap().run(&()).unwrap();
     let mut memory = sweepsim_job::Memory::default();
