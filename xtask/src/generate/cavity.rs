@@ -167,12 +167,12 @@ mod tests {
         assert!((2_000..6_000).contains(&path.len()), "{} poses", path.len());
         // Points of the body, floor included.
         let mut body = Vec::new();
-        for b in 0..=160 {
-            let (circle, _) = around(f64::from(b) / 80.0);
-            for a in 0..=200 {
-                let p = profile(1.0 + 2.0 * f64::from(a) / 200.0).0;
+        for b in 0..=100 {
+            let (circle, _) = around(f64::from(b) / 50.0);
+            for a in 0..=120 {
+                let p = profile(1.0 + 2.0 * f64::from(a) / 120.0).0;
                 body.push(Vector3::new(p.x, p.y * circle.x, -p.y * circle.y));
-                let r = 22.5 * f64::from(a) / 200.0;
+                let r = 22.5 * f64::from(a) / 120.0;
                 body.push(Vector3::new(0.0, r * circle.x, -r * circle.y));
             }
         }

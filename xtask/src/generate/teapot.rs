@@ -145,30 +145,39 @@ fn lowest(curve: &dyn Fn(f64) -> Placement) -> f64 {
     above
 }
 
-/// The body as points, to keep the tool out of it.
-struct Body(Vec<Vector3<f64>>);
+/// The body as points, to keep the tool out of it: some neighbours each, in a ball around the first.
+struct Body(Vec<(Vec<Vector3<f64>>, f64)>);
 
 impl Body {
     fn new() -> Self {
         let (along, around_it) = (240, 320);
-        let points = (0..=along)
+        let points: Vec<Vector3<f64>> = (0..=along)
             .flat_map(|a| (0..=around_it).map(move |b| (a, b)))
             .map(|(a, b)| {
                 let v = PROFILE.len() as f64 * f64::from(a) / f64::from(along);
                 touching(profile(v), 2.0 * f64::from(b) / f64::from(around_it)).tip
             })
             .collect();
-        Self(points)
+        let ball = |points: &[Vector3<f64>]| {
+            let radius = points.iter().map(|point| (point - points[0]).norm()).fold(0.0, f64::max);
+            (points.to_vec(), radius)
+        };
+        Self(points.chunks(20).map(ball).collect())
     }
 
     /// How far the tool must be lifted along its axis so that no point of the body is inside it.
     fn lift(&self, tool: &Placement) -> f64 {
-        let inside = |point: &Vector3<f64>| {
+        // The height of a point, if it is in the tool but for a distance.
+        let inside = |point: &Vector3<f64>, distance: f64| {
             let from_tip = point - tool.tip;
             let height = from_tip.dot(&tool.axis);
-            (height > 0.0 && from_tip.norm_squared() - height * height < RADIUS * RADIUS).then_some(height)
+            let off = from_tip.norm_squared() - height * height;
+            (height > -distance && off < (RADIUS + distance).powi(2)).then_some(height)
         };
-        self.0.iter().filter_map(inside).fold(0.0, f64::max)
+        let near = self.0.iter().filter(|(points, radius)| inside(&points[0], *radius).is_some());
+        near.flat_map(|(points, _)| points)
+            .filter_map(|point| inside(point, 0.0))
+            .fold(0.0, f64::max)
     }
 }
 

@@ -14,7 +14,7 @@ use std::{fs, panic};
 
 /// A reader may take so long for a file of a few kilobytes.
 const LONGEST: Duration = Duration::from_secs(2);
-/// And so many bytes beyond what others took.
+/// And so many bytes beyond what others took, where nothing else runs in this process.
 const MOST: u64 = 256 << 20;
 /// Files of shared data are taken up to this size.
 const LARGEST: usize = 64 << 10;
@@ -54,12 +54,12 @@ pub fn run(only: Option<&str>, minutes: f64) -> Result<bool, String> {
     for reader in chosen {
         let begin = Instant::now();
         let seed = begin_seed();
-        let (tried, failure) = search(reader, &corpus(reader, true), seed, |_| begin.elapsed() < time);
+        let (tried, failure) = search((reader, MOST), &corpus(reader, true), seed, |_| begin.elapsed() < time);
         match failure {
             None => println!("{}: {tried} files", reader.name),
             Some((file, why)) => {
                 good = false;
-                let file = keep(reader, &smaller(reader, file))?;
+                let file = keep(reader, &smaller((reader, MOST), file))?;
                 println!("{}: {why}: {}", reader.name, file.display());
             }
         }
@@ -75,7 +75,7 @@ fn begin_seed() -> u64 {
 
 /// Tries files, those of the corpus first, as they are: how many, and the first that the reader fails on, and how.
 fn search(
-    reader: &Reader,
+    reader: (&Reader, u64),
     corpus: &[Vec<u8>],
     seed: u64,
     goes_on: impl Fn(usize) -> bool,
@@ -98,8 +98,8 @@ fn search(
     (tried, None)
 }
 
-/// What is wrong with the answer of a reader, if it is.
-fn fails(reader: &Reader, file: &[u8]) -> Option<String> {
+/// What is wrong with the answer of a reader, which may take so many bytes, if it is.
+fn fails((reader, most): (&Reader, u64), file: &[u8]) -> Option<String> {
     let (begin, before) = (Instant::now(), peak());
     let answer = panic::catch_unwind(|| (reader.read)(file));
     let (took, more) = (begin.elapsed(), peak().saturating_sub(before));
@@ -111,7 +111,7 @@ fn fails(reader: &Reader, file: &[u8]) -> Option<String> {
         }
         Ok(Some(error)) if error.trim().is_empty() => Some("an error without a message".into()),
         Ok(_) if took > LONGEST => Some(format!("took {took:.1?}")),
-        Ok(_) if more > MOST => Some(format!("took {} MiB", more >> 20)),
+        Ok(_) if more > most => Some(format!("took {} MiB", more >> 20)),
         Ok(_) => None,
     }
 }
@@ -206,7 +206,7 @@ fn mutated(corpus: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 }
 
 /// The same failure from a smaller file: parts are left out as long as the reader fails.
-fn smaller(reader: &Reader, mut file: Vec<u8>) -> Vec<u8> {
+fn smaller(reader: (&Reader, u64), mut file: Vec<u8>) -> Vec<u8> {
     let mut length = file.len() / 2;
     let mut tries = 0;
     while length > 0 && tries < SMALLER {
@@ -241,19 +241,18 @@ fn keep(reader: &Reader, file: &[u8]) -> Result<PathBuf, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Mutex;
+    use std::process::Command;
 
-    /// What one test takes of memory is no failure of another's readers.
-    static ALONE: Mutex<()> = Mutex::new(());
+    /// What other tests take in this process is no failure of a reader.
+    const ANY: u64 = u64::MAX;
 
     #[test]
     fn readers_answer_whatever_is_in_a_file() {
-        let _alone = ALONE.lock();
         for reader in &READERS {
             let corpus = corpus(reader, false);
             let own = corpus.last().expect("a file of its own");
             assert_eq!((reader.read)(own), None, "{}: its own file is read", reader.name);
-            let (tried, failure) = search(reader, &corpus, 1, |tried| tried < 150);
+            let (tried, failure) = search((reader, ANY), &corpus, 1, |tried| tried < 150);
             assert!(failure.is_none(), "{}: {:?}", reader.name, failure.map(|(_, why)| why));
             assert_eq!(tried, 150);
         }
@@ -272,25 +271,38 @@ mod tests {
         };
         let hook = panic::take_hook();
         panic::set_hook(Box::new(|_| {}));
-        let (_, failure) = search(&reader, &corpus(&reader, false), 1, |tried| tried < 1000);
+        let (_, failure) = search((&reader, ANY), &corpus(&reader, false), 1, |tried| tried < 1000);
         let (file, why) = failure.expect("one of a thousand");
-        let file = smaller(&reader, file);
+        let file = smaller((&reader, ANY), file);
         panic::set_hook(hook);
         assert_eq!((file, why.as_str()), (b"NaN".to_vec(), "panicked: no number"));
     }
 
     #[test]
     fn a_reader_that_takes_much_memory_fails() {
-        let _alone = ALONE.lock();
-        let reader = Reader {
-            name: "greedy",
-            endings: &[],
-            own: Vec::new,
-            read: |file| (file.repeat(1 << 20).len() < file.len()).then(|| "cannot be".into()),
-        };
-        assert_eq!(fails(&reader, &[1; 16]), None);
-        // Where the system does not tell, nothing can be said.
-        let why = fails(&reader, &[1; 1024]);
-        assert!(peak() == 0 || why.is_some_and(|why| why.ends_with("MiB")));
+        let mut alone = Command::new(std::env::current_exe().expect("this program"));
+        alone.args(["--exact", "mutate::tests::alone::a_greedy_reader_fails", "--ignored"]);
+        let output = alone.output().expect("this program runs");
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && text.contains("1 passed"), "{text}");
+    }
+
+    mod alone {
+        use super::*;
+
+        #[test]
+        #[ignore = "run by the test above, in a process of its own"]
+        fn a_greedy_reader_fails() {
+            let reader = Reader {
+                name: "greedy",
+                endings: &[],
+                own: Vec::new,
+                read: |file| (file.repeat(1 << 20).len() < file.len()).then(|| "cannot be".into()),
+            };
+            assert_eq!(fails((&reader, MOST), &[1; 16]), None);
+            // Where the system does not tell, nothing can be said.
+            let why = fails((&reader, MOST), &[1; 1024]);
+            assert!(peak() == 0 || why.is_some_and(|why| why.ends_with("MiB")));
+        }
     }
 }

@@ -30,14 +30,18 @@ pub(super) struct Wanted {
 }
 
 /// Where cutters go deep, the enclosure may be as wide as this part of the depth.
-pub(super) const SHARE: f64 = 1.0 / 64.0;
+const SHARE: f64 = 1.0 / 64.0;
+/// And where they go far beyond the limit, as this part of what is beyond so many limits.
+const FAR: f64 = 1.0 / 8.0;
+const FAR_LIMITS: f64 = 16.0;
 
 /// Whether a limit is kept need not be known where the deepest place is nearer to it than this part of the width.
 const LEAST: f64 = 0.1;
 
 /// If some point is known to be so deep, what is no deeper than this is done. Whether the limit is kept is to be known.
 pub(super) fn enough(known: f64, width: f64, limit: f64) -> f64 {
-    let enough = known + width.max(known * SHARE);
+    let far = (known - FAR_LIMITS * limit.abs()) * FAR;
+    let enough = known + width.max(known * SHARE).max(far);
     if known > limit {
         return enough;
     }

@@ -241,7 +241,7 @@ fn check_samples(number: usize, start: [f64; 3], arc: Arc, axis: [f64; 3], frame
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(cases() / 4))]
+    #![proptest_config(ProptestConfig::with_cases(cases() / 8))]
 
     /// Any axis, in a frame.
     #[test]

@@ -230,7 +230,7 @@ proptest! {
     /// The lowest point over each line is that of the tool, sampled in time.
     #[test]
     fn lowest_points(lie in lies(), pointed in any::<bool>(), start in small(3.0), arcs in arcs(1, 0.3..9.0)) {
-        lowest(lie, pointed, start, arcs[0], &grid([17, 15]))?;
+        lowest(lie, pointed, start, arcs[0], &grid([10, 9]))?;
     }
 }
 

@@ -134,7 +134,7 @@ proptest! {
         let [radius, plane, from, angle] = arcs[0];
         let [ax, ay, _] = axis(plane, positive);
         let (tool, _) = tool(pointed);
-        let (lines, path) = (grid([17, 15]), path(start, &arcs, [0.0; 3], [ax, ay, 0.0]));
+        let (lines, path) = (grid([10, 9]), path(start, &arcs, [0.0; 3], [ax, ay, 0.0]));
         let found = sweep(&tool, &path, &lines, &Options::new(TOLERANCE), &()).unwrap();
         prop_assert!(found.statistics.unresolved.is_empty(), "{:?}", found.statistics);
         for index in 0..lines.len() {

@@ -14,7 +14,7 @@ fn placed() -> Judging {
 }
 
 /// A mill with a post on its bed at X 200 … 240, and X from -250 to 250.
-fn run(offset: [f64; 3], program: &str) -> Outcome {
+fn run(offset: [f64; 3], program: &str, judging: Judging) -> Outcome {
     let [x, y, z] = offset;
     let machine = format!(
         r#"Machine(name: "mill", part_zero: ({x}, {y}, {}), tool_length: 100, rapid: Straight, bodies: [
@@ -25,7 +25,7 @@ fn run(offset: [f64; 3], program: &str) -> Outcome {
         (letter: 'Z', limits: (-450, 0), home: 0)], tool_change: [{{'Z': 0}}])"#,
         z - 400.0
     );
-    judged(&written(&machine), program, BLOCK, placed())
+    judged(&written(&machine), program, BLOCK, judging)
 }
 
 fn is_free(outcome: &Outcome) -> bool {
@@ -39,7 +39,7 @@ fn is_free(outcome: &Outcome) -> bool {
 
 /// The box is free at its corners and in its middle, and it is as large as it may be on the side that is bounded.
 fn check(program: &str, side: usize, is_upper: bool, bound: f64) {
-    let outcome = run([0.0; 3], program);
+    let outcome = run([0.0; 3], program, placed());
     assert!(!is_free(&outcome));
     let [low, high] = outcome.report().free_place.expect("a place");
     assert!((0..3).all(|k| low[k] < high[k]), "{low:?} {high:?}");
@@ -52,12 +52,12 @@ fn check(program: &str, side: usize, is_upper: bool, bound: f64) {
             _ if n >> k & 1 == 1 => high[k],
             _ => low[k],
         });
-        assert!(is_free(&run(at, program)), "{at:?} of {low:?} {high:?}");
+        assert!(is_free(&run(at, program, Judging::default())), "{at:?} of {low:?} {high:?}");
     }
     // Below, where it does not pass over the post.
     let mut beyond = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]];
     beyond[side] = if is_upper { bound + 0.1 } else { bound - 0.1 };
-    assert!(!is_free(&run(beyond, program)), "{beyond:?}");
+    assert!(!is_free(&run(beyond, program, Judging::default())), "{beyond:?}");
     assert!(
         outcome
             .report()
@@ -101,6 +101,7 @@ fn no_place_is_proposed_where_there_is_none() {
     let outcome = run(
         [0.0; 3],
         "G21 G90\nT1 M6\nS900 M3\nG0 X0 Y0 Z200\nG0 Y215\nG0 Y-195\nM30\n",
+        placed(),
     );
     assert_eq!(outcome.report().free_place, None);
     assert!(
