@@ -91,7 +91,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             segment,
             level_arc,
             vertical_arc,
-            arc_about_axis,
             ..
         } = &self.parts[at];
         let mut collector = Collector {
@@ -101,16 +100,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
-        if let Some(arc) = arc_about_axis {
-            let arc = (
-                arc,
-                segment,
-                translation::slack(self.size.system_rounding),
-                self.height_tolerance,
-            );
-            translation::sweep_arc_about_axis(outline, arc, &mut collector, by_share, settled);
-            return;
-        }
         let collector = (&mut collector, self.ceiling);
         if let Some(vertical_arc) = vertical_arc {
             let arc = (

@@ -9,7 +9,6 @@
 //! solved by the general method.
 
 mod arc_place;
-mod arcs_about_axis;
 mod at_rest;
 mod ceiling;
 mod curves;
@@ -21,7 +20,6 @@ mod straight;
 mod stretches;
 mod vertical_arcs;
 
-pub(crate) use arcs_about_axis::sweep_arc_about_axis;
 pub(crate) use at_rest::{Neighbour, leaning, placements};
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
