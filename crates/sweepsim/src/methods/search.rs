@@ -124,12 +124,10 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles the patches and edges that have no closed form along a move without rotation, or along an arc with which the tool turns.
+    /// Settles the patches and edges that have no closed form along a move without rotation.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart { segment, level_arc, .. } = &self.parts[at];
         let mut grazed = Grazed {
-            segment,
-            level_arc: level_arc.as_ref(),
+            segment: &self.parts[at].segment,
             collector: &mut Collector {
                 lines: self.lines,
                 harvest,
@@ -140,28 +138,17 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
         };
-        let rings = self
-            .outline
-            .filter(|_| level_arc.is_some())
-            .map(|outline| &outline.rings);
-        let [of_patches, of_edges] = rings.map_or([&[][..]; 2], |rings| rings.each_ref().map(|list| &list[..]));
         let patches = Elements {
             forms: &self.cutter.patches,
             cells: &mut space.patches,
             done: &mut space.done.patches,
-            rings: of_patches,
         };
         let edges = Elements {
             forms: &self.cutter.edges,
             cells: &mut space.edges,
             done: &mut space.done.edges,
-            rings: of_edges,
         };
-        let source = |t: f64| match level_arc {
-            // Arcs have constant speed.
-            Some(_) => self.source_after(at, t),
-            None => self.source(at, t),
-        };
+        let source = |t: f64| self.source(at, t);
         space.grazing.settle([patches, edges], &mut grazed, &source);
     }
 

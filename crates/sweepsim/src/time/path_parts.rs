@@ -12,7 +12,7 @@ use sweepsim_motion::{Path, Segment};
 #[derive(Clone, Debug)]
 pub(crate) struct PathPart {
     pub segment: Segment,
-    /// The same as a circle or helix about a line along the dexels, for a tool that stands along them and turns with it, as one of revolution may.
+    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
     pub level_arc: Option<LevelArc>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
     pub vertical_arc: Option<VerticalArc>,
@@ -148,11 +148,9 @@ pub(crate) fn parts(
             let by = [displaced(from, [last, own]), displaced(to, [own, next])];
             last = own;
             let limit = tolerances.circle_deviation();
-            let level_arc = if carried {
-                None
-            } else {
-                LevelArc::parts(path, to - 1 - first, frame, (&segments, symmetric, reach), (by, limit))
-            };
+            let level_arc = symmetric
+                .then(|| LevelArc::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit)))
+                .flatten();
             let vertical_arc = match level_arc {
                 None if symmetric => VerticalArc::parts(path, to - 1 - first, (frame, reach), (by, limit)),
                 _ => None,

@@ -1,7 +1,6 @@
 //! A patch, seen in the coordinates of a move.
 
 use super::directed_motion::Directions;
-use super::polar::Centre;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
@@ -16,10 +15,9 @@ pub(super) struct Face<'a> {
     element: &'a PatchForms,
     placing: Placing,
     way: Twisted,
-    centre: Option<Centre>,
 }
 
-/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip, or [about a centre](super::polar).
+/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight {
     pub place: [f64; 3],
@@ -33,12 +31,10 @@ impl<'a> Face<'a> {
     pub fn new(element: &'a PatchForms, directions: &Directions) -> Self {
         let [q, p, z] = directions.rows.map(|row| Vector3::from(row).transpose());
         let frame = element.frame();
-        let [spin, way] = directions.twist().map(Vector3::from);
         Self {
             element,
             placing: Placing::new(&Matrix3::from_rows(&[q, p, z]), &Vector3::zeros(), frame),
-            way: Twisted::new(&spin, &way, frame),
-            centre: directions.centre,
+            way: Twisted::new(&Vector3::zeros(), &directions.way.into(), frame),
         }
     }
 }
@@ -57,15 +53,11 @@ impl Curve for Face<'_> {
             }
         };
         let three = |[q, p, z, _]: [f64; 4]| [q, p, z];
-        let sight = Sight {
+        Sight {
             place: three(point.place),
             slopes: point.slopes.map(three),
             g,
             normal: three(point.normal),
-        };
-        match &self.centre {
-            Some(centre) => centre.seen(&sight),
-            None => sight,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Grazing curves of any patch: see `docs/algorithms/grazing-curves.md`.
 //!
-//! On moves without rotation, and on arcs about the dexels' direction of a tool that turns with them, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
+//! On moves without rotation, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
 //! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it. Sharp edges are solved in the same way, with their own curve in the place of the grazing curve.
 
 mod at_rest;
@@ -10,7 +10,6 @@ mod face;
 mod knot;
 mod lines;
 mod newton;
-mod polar;
 mod rim;
 mod span;
 mod tree;
@@ -21,14 +20,12 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, Size};
 use crate::methods::harvest::unit;
-use crate::time::circles::LevelArc;
 use at_rest::{Finds, Search, Still, TooMany};
 use directed_motion::{DirectedMotion, Directions, Key};
 use face::{Curve, Face};
 use lines::{Lines, Target};
 use nalgebra::{Matrix3, Vector3};
 use rim::Rim;
-use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
@@ -66,16 +63,11 @@ pub(crate) struct Elements<'a> {
     pub cells: &'a mut [Cells],
     /// Which of them are settled.
     pub done: &'a mut [bool],
-    /// Those that are settled together or not at all, in ascending order: along an arc a tool of revolution is turned about its own axis as charts do not have it, and its
-    /// seams are elsewhere.
-    pub rings: &'a [Range<usize>],
 }
 
 /// A search of lines along one move.
 pub(crate) struct Grazed<'a, 'b> {
     pub segment: &'a Segment,
-    /// The same as an arc with which a tool of revolution turns.
-    pub level_arc: Option<&'a LevelArc>,
     pub collector: &'a mut Collector<'b>,
     pub ceiling: Option<&'a Ceiling>,
     /// The rounding error of coordinates.
@@ -131,16 +123,14 @@ impl Grazing {
         self.families.last_mut()
     }
 
-    /// Settles the patches and the edges that are not done along a move without rotation or an arc with which the tool turns, as far as that is possible.
+    /// Settles the patches and the edges that are not done along a move without rotation, as far as that is possible.
     pub fn settle(&mut self, tool: [Elements; 2], grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
         if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
             return;
         }
-        let motion = match grazed.level_arc {
-            Some(level_arc) => DirectedMotion::around(level_arc, grazed.segment, grazed.system_rounding),
-            None => DirectedMotion::new(grazed.segment, grazed.system_rounding),
+        let Some(motion) = DirectedMotion::new(grazed.segment, grazed.system_rounding) else {
+            return;
         };
-        let Some(motion) = motion else { return };
         let mut targets = std::mem::take(&mut self.targets);
         let counts = tool.each_ref().map(|elements| elements.forms.len());
         let Some(family) = self.family(&motion, counts) else {
@@ -148,23 +138,13 @@ impl Grazing {
         };
         let mut trimmed = Vec::new();
         for (kind, (elements, trees)) in tool.into_iter().zip(&mut family.trees).enumerate() {
-            let Elements {
-                forms,
-                cells,
-                done,
-                rings,
-            } = elements;
-            let (mut mark, mut next) = (grazed.collector.mark(), 0);
+            let Elements { forms, cells, done } = elements;
             for number in 0..forms.len() {
-                if done[number] || number < next {
+                if done[number] {
                     continue;
                 }
+                let mark = grazed.collector.mark();
                 let (element, cells, directions) = (&forms[number], &mut cells[number], &family.directions);
-                let ring = rings.iter().find(|ring| ring.contains(&number)).cloned();
-                let ring = ring.unwrap_or(number..number + 1);
-                if number == ring.start {
-                    mark = grazed.collector.mark();
-                }
                 let tree = trees[number]
                     .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
                 let of = (element, &mut *cells);
@@ -177,8 +157,6 @@ impl Grazing {
                 };
                 if !done[number] {
                     grazed.collector.forget(mark);
-                    next = ring.end;
-                    done[ring].fill(false);
                 }
                 if cells.trim() {
                     trimmed.push((kind, number));
@@ -225,7 +203,6 @@ impl Grazed<'_, '_> {
                 height_tolerance: self.height_tolerance,
                 last: self.last,
                 evaluations: 0,
-                middle: 0.0,
                 targets: std::mem::take(targets),
             },
         };

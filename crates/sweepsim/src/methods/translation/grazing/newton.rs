@@ -43,7 +43,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
             [a, b] => a.or(b),
         };
-        let error = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.floor.error();
         if let (Some(knot), Some((q, _))) = (nearest, line) {
             let (lo, hi) = chart.q(&knot.witness, &within);
             // A knot is of use to other lines.
@@ -92,7 +92,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         });
                     }
                     if long <= ON_FACE {
-                        self.leave((p, line), &here, &within);
+                        self.leave(line, &here, &within);
                         return None;
                     }
                 }
@@ -119,7 +119,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         return None;
                     }
                 }
-                self.leave((p, line), &here, &within);
+                self.leave(line, &here, &within);
                 return None;
             }
             s = step.map_or_else(
@@ -128,15 +128,15 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             );
         }
         if let Some(latest) = latest {
-            self.leave((p, line), latest, &within);
+            self.leave(line, latest, &within);
         }
         None
     }
 
     /// Leaves a line open, unless no point of the region meets it on its way, as seen from a witness.
-    fn leave(&mut self, (p, line): (f64, Option<(f64, u32)>), witness: &Witness, within: &Region) {
+    fn leave(&mut self, line: Option<(f64, u32)>, witness: &Witness, within: &Region) {
         let Some((q, line)) = line else { return };
-        let error = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.floor.error();
         let (lo, hi) = self.chart.q(witness, within);
         if meets((lo - error, hi + error), q, self.lines.motion.length) {
             self.lines.collector.open(line as usize);
@@ -163,7 +163,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
         let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
-        let error = self.chart.change(off) + self.lines.motion.ground.error(p);
+        let error = self.chart.change(off) + self.lines.motion.floor.error();
         let ahead = q - place[0];
         let length = self.lines.motion.length;
         if ahead < -error || ahead > length + error {
@@ -173,7 +173,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         if !(ahead > error && ahead < length - error) {
             return Verdict::Unsure;
         }
-        self.put((line, q), ahead, place[1], normal);
+        self.put(line, ahead, place[1], normal);
         Verdict::Settled
     }
 }

@@ -6,7 +6,6 @@
 use super::chart::{Chart, Range, magnitude};
 use super::directed_motion::Directions;
 use super::face::{Curve, Sight};
-use super::polar::Centre;
 use super::tree::{Blur, FLAT, SMALLEST, error, g};
 use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
@@ -26,7 +25,6 @@ pub(super) struct Rim<'a> {
     placing: Placing,
     /// The parts of the unit vector along the way, ahead and up.
     way: [f64; 2],
-    centre: Option<Centre>,
 }
 
 impl<'a> Rim<'a> {
@@ -37,13 +35,12 @@ impl<'a> Rim<'a> {
             element,
             placing: Placing::new(&Matrix3::from_columns(&rows).transpose(), &Vector3::zeros(), None),
             way: [rows[0].dot(&way), rows[2].dot(&way)],
-            centre: directions.centre,
         }
     }
 }
 
 impl Curve for Rim<'_> {
-    /// The normal is `C′ × d`, across the strip, to either side: see [`Chart::outwards`]. About a centre, `d` is the velocity of the point itself.
+    /// The normal is `C′ × d`, across the strip, to either side: see [`Chart::outwards`].
     #[inline]
     fn at(&self, [r, w]: [f64; 2]) -> Sight {
         let point = position(&self.element.places.along::<4>(r));
@@ -52,24 +49,11 @@ impl Curve for Rim<'_> {
             [q, p, z]
         });
         let across = |[q, p, z]: [f64; 3], [ahead, up]: [f64; 2]| [p * up, z * ahead - q * up, -p * ahead];
-        let sight = Sight {
+        Sight {
             place,
             slopes: [slope, [0.0; 3]],
             g: [w, 0.0, 1.0],
-            normal: slope,
-        };
-        let [ahead, up] = self.way;
-        match &self.centre {
-            None => Sight {
-                normal: across(slope, self.way),
-                ..sight
-            },
-            Some(centre) => {
-                let seen = centre.seen(&sight);
-                let distance = centre.radius - seen.place[1];
-                let normal = across(seen.normal, [distance * ahead, centre.radius * up]);
-                Sight { normal, ..seen }
-            }
+            normal: across(slope, self.way),
         }
     }
 }
@@ -134,8 +118,8 @@ pub(super) fn look(
         return Look::Empty;
     }
     cells.prepare(element, cell);
-    let wedge = directions.wedge(&cells.position(element, cell), blur.place);
-    let ([ahead, across], differs) = directions.slopes((element, cells, cell), wedge.as_ref(), (0, blur.slopes[0]));
+    let differs = blur.slopes[0];
+    let [ahead, across] = directions.slopes((element, cells, cell), (0, differs));
     let half = 0.5 * (upper - lower);
     let jacobian = [[across, NOTHING], [NOTHING, (1.0, 1.0)]];
     let blurs = [[differs, 0.0], [0.0; 2]];
@@ -147,23 +131,16 @@ pub(super) fn look(
             chart.outwards = outwards(element, 0.5 * (lower + upper), directions);
             Look::Chart(Box::new(chart))
         }
-        Err(own)
-            if is_family
-                && (own.blurred
-                    || wedge.is_some_and(|wedge| wedge.is_blurred)
-                    || magnitude(across) <= BLURRED * differs) =>
-        {
-            Look::Mixed
-        }
+        Err(own) if is_family && (own.blurred || magnitude(across) <= BLURRED * differs) => Look::Mixed,
         Err(_) => rough,
     }
 }
 
 /// Whether `C′ × d` points outwards at a point (1), or inwards (−1).
 fn outwards(element: &PatchForms, r: f64, directions: &Directions) -> f64 {
-    let [point, slope] = position(&element.places.along::<4>(r));
+    let [_, slope] = position(&element.places.along::<4>(r));
     let (_, [[n, _], [m, _]]) = element.rim(r);
-    let way = directions.velocity(&point);
+    let way = Vector3::from(directions.way);
     // The envelope's normal lies in the fan of the two faces, where g = 0.
     let normal = n * m.dot(&way).abs() + m * n.dot(&way).abs();
     if slope.cross(&way).dot(&normal) < 0.0 {
@@ -178,7 +155,6 @@ mod tests {
     use super::super::directed_motion::DirectedMotion;
     use super::super::tree::Tree;
     use super::*;
-    use crate::time::circles::LevelArc;
     use proptest::prelude::*;
     use sweepsim_motion::{Patch, Pose, Segment, Tool};
     use sweepsim_spline::Bernstein;
@@ -204,33 +180,23 @@ mod tests {
 
     /// `p′`, and `g` of both faces.
     fn at(element: &PatchForms, r: f64, directions: &Directions) -> (f64, [f64; 2]) {
-        let [point, slope] = position(&element.places.along::<4>(r));
+        let [_, slope] = position(&element.places.along::<4>(r));
         let (_, normals) = element.rim(r);
-        let velocity = directions.velocity(&point);
-        let across = match &directions.centre {
-            None => Vector3::from(directions.rows[1]).dot(&slope),
-            Some(centre) => {
-                let out = point - Vector3::from(directions.rows[1]) * centre.radius;
-                -out.xy().dot(&slope.xy()) / out.xy().norm()
-            }
-        };
-        (across, normals.map(|[n, _]| n.dot(&velocity)))
+        let across = Vector3::from(directions.rows[1]).dot(&slope);
+        let way = Vector3::from(directions.way);
+        (across, normals.map(|[n, _]| n.dot(&way)))
     }
 
     proptest! {
-        /// What is said of a cell for a family of directions holds for each of them, at all of its points. `radius`: of an arc with which the tool turns.
+        /// What is said of a cell for a family of directions holds for each of them, at all of its points.
         #[test]
         fn looks_hold_for_all_of_a_family(
-            tool in 0..4_usize, radius in prop::option::of(-2.0..4.0_f64), axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0], way in [-2.0..2.0, -2.0..2.0, -1.0..1.0], shift in [-1e-7..1e-7, -1e-7..1e-7, -1e-7..1e-7], shares in [0.0..1.0, 0.0..1.0],
+            tool in 0..4_usize, axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0], way in [-2.0..2.0, -2.0..2.0, -1.0..1.0], shift in [-1e-7..1e-7, -1e-7..1e-7, -1e-7..1e-7], shares in [0.0..1.0, 0.0..1.0],
         ) {
             let tool = [Tool::flat(3.0, 9.0), Tool::bull(3.0, 1.0, 9.0), Tool::ball(3.0, 9.0), Ok(block())][tool].clone().unwrap();
-            let pose = |tip| Pose::new(tip, if radius.is_some() { [0.0, 0.0, 1.0] } else { axis }).unwrap();
+            let pose = |tip| Pose::new(tip, axis).unwrap();
             let motion = |way: [f64; 3]| {
-                let segment = Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
-                let Some(radius) = radius else { return DirectedMotion::new(&segment, 1e-13) };
-                let [x, y, _] = way;
-                let level_arc = LevelArc { centre: [0.3, -0.2], radius: radius.exp() + 0.1 * way[2], from: [0.6, 0.8], angle: x, tool_x: Some([x / x.hypot(y), y / x.hypot(y)]) };
-                DirectedMotion::around(&level_arc, &segment, 1e-13)
+                DirectedMotion::new(&Segment::between(&pose([0.0; 3]), &pose(way)).remove(0), 1e-13)
             };
             let (Some(motion), Some(other)) = (motion(way), motion([0, 1, 2].map(|k: usize| way[k] + shift[k]))) else { return Ok(()) };
             let Some((key, family)) = motion.family() else { return Ok(()) };

@@ -3,7 +3,7 @@
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::directed_motion::Directions;
 use super::rim::{Look, look};
-use crate::algebra::ranges::{ROUNDING, Triples, envelope, products};
+use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{at_pole, pole};
@@ -93,11 +93,6 @@ fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|k| a[k].abs() * b[k]).sum()
 }
 
-/// The same of moments and normals, for the angular velocity and the direction of the way.
-fn both(twist: &[[f64; 3]; 2], sizes: &[[f64; 3]; 2]) -> f64 {
-    total(&twist[0], &sizes[0]) + total(&twist[1], &sizes[1])
-}
-
 pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
     (lo - by, hi + by)
 }
@@ -109,14 +104,12 @@ impl Blur {
         }
         cells.prepare(element, cell);
         let one = [directions.spread; 3];
-        // Of the angular velocity, and of the direction of the way.
-        let twist = [directions.rows[2].map(|x| x * directions.spin_spread), one];
         let missing = cells.missing(cell);
         if element.is_edge() {
             return Self {
                 place: total(&one, &sizes(&cells.position(element, cell))),
                 slopes: [total(&one, &sizes(&cells.slope(element, cell, 0))), 0.0],
-                g: both(&twist, &element.largest),
+                g: total(&one, &element.largest[1]),
                 g_slopes: [0.0; 2],
             };
         }
@@ -125,10 +118,10 @@ impl Blur {
             slopes: [0, 1].map(|axis| {
                 total(&one, &sizes(&cells.slope(element, cell, axis))) + total(&one, &missing.tangents[axis])
             }),
-            g: both(&twist, &element.largest),
+            g: total(&one, &element.largest[1]),
             g_slopes: [0, 1].map(|axis| {
-                let [normals, moments] = cells.field_slope(cell, 0, axis);
-                both(&twist, &[sizes(&moments), sizes(&normals)]) + both(&twist, &missing.slopes[axis])
+                let [normals, _] = cells.field_slope(cell, 0, axis);
+                total(&one, &sizes(&normals)) + total(&one, &missing.slopes[axis][1])
             }),
         }
     }
@@ -137,18 +130,12 @@ impl Blur {
 /// The bound of the rounding error of `g` on a cell of a patch.
 pub(super) fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
     let rounding = element.rounding_in([u.0, v.0], [u.1, v.1]);
-    ROUNDING * both(&directions.twist(), rounding)
+    ROUNDING * total(&directions.way, &rounding[1])
 }
 
-/// The range of `⟨way, N⟩ + ⟨spin, M⟩` over all coefficients of `N` and `M`, and what these lack.
-fn envelope_of(fields: &[Triples; 2], missing: &[[f64; 3]; 2], directions: &Directions) -> Range {
-    let twist = directions.twist();
-    let range = if directions.spin == 0.0 {
-        products(&[directions.way], &fields[0])
-    } else {
-        envelope(&[twist[0]], &[twist[1]], fields)
-    };
-    widened(range, both(&twist, missing))
+/// The range of `⟨way, N⟩` over all coefficients of `N`, and what these lack.
+fn envelope_of([normals, _]: &[Triples; 2], [_, missing]: &[[f64; 3]; 2], directions: &Directions) -> Range {
+    widened(products(&[directions.way], normals), total(&directions.way, missing))
 }
 
 /// The range of `g` on a cell, but for rounding; of an edge, on one of its two sides.
@@ -210,7 +197,8 @@ impl Tree {
         system_rounding: f64,
     ) {
         let position = cells.position(element, cell);
-        let [q, p] = directions.ranges(&position, self.blur.place, system_rounding);
+        let off = self.blur.place + system_rounding;
+        let [q, p] = [0, 1].map(|k| widened(products(&[directions.rows[k]], &position), off));
         let (lowest, _) = products(&[directions.rows[2]], &position);
         let node = Node {
             cell,
@@ -281,14 +269,12 @@ impl Tree {
             g_slopes,
             ..
         } = &self.blur;
-        let wedge = directions.wedge(&cells.position(element, cell), self.blur.place);
-        let of_place =
-            [0, 1].map(|axis| directions.slopes((element, cells, cell), wedge.as_ref(), (axis, place_slopes[axis])));
-        let [([q_u, p_u], in_u), ([q_v, p_v], in_v)] = of_place;
+        let of_place = [0, 1].map(|axis| directions.slopes((element, cells, cell), (axis, place_slopes[axis])));
+        let [[q_u, p_u], [q_v, p_v]] = of_place;
         let of_g = slopes_of_g(cells, cell, directions, g_slopes);
         let jacobian = [[p_u, p_v], of_g];
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
-        let blur = [[in_u, in_v], *g_slopes];
+        let blur = [*place_slopes, *g_slopes];
         let rough = match Chart::new([lower, upper], &jacobian, &blur, [system_rounding, error], [q_u, q_v]) {
             Ok(chart) => return self.chart(chart),
             Err(rough) => rough,
@@ -314,8 +300,7 @@ impl Tree {
         }
         let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
         let small = sides.iter().all(|side| *side < SMALLEST);
-        let is_blurred = rough.blurred || wedge.is_some_and(|wedge| wedge.is_blurred);
-        if directions.spread > 0.0 && (is_blurred || small) {
+        if directions.spread > 0.0 && (rough.blurred || small) {
             return State::Mixed;
         }
         if small || p.1 - p.0 - 2.0 * system_rounding < FLAT * system_rounding {

@@ -52,7 +52,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
             let node = tree.node(number);
             let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
             self.visits += 1;
-            if node.lowest > self.highest || !self.motion.ground.meets(self.lines.collector.lines, window) {
+            if node.lowest > self.highest || !self.motion.floor.meets(self.lines.collector.lines, window) {
                 continue;
             }
             if self.monitor.cancelled() {
