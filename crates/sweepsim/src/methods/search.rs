@@ -9,7 +9,7 @@ use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
-use crate::methods::translation::{self, Ceiling, Collector, Elements, Grazed, Heading};
+use crate::methods::translation::{self, Ceiling, Collector, Grazed, Heading, Patches};
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
@@ -124,7 +124,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles the patches and edges that have no closed form along a move without rotation.
+    /// Settles the patches that have no closed form along a move without rotation.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let mut grazed = Grazed {
             segment: &self.parts[at].segment,
@@ -138,18 +138,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
         };
-        let patches = Elements {
+        let patches = Patches {
             forms: &self.cutter.patches,
             cells: &mut space.patches,
             done: &mut space.done.patches,
         };
-        let edges = Elements {
-            forms: &self.cutter.edges,
-            cells: &mut space.edges,
-            done: &mut space.done.edges,
-        };
         let source = |t: f64| self.source(at, t);
-        space.grazing.settle([patches, edges], &mut grazed, &source);
+        space.grazing.settle(patches, &mut grazed, &source);
     }
 
     /// Settles what it can of a move that turns, line by line.
@@ -223,7 +218,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                         .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
                     drop(sink);
                     times.trim(own);
-                    space.trim_edge(number);
+                    space.edges[number].trim();
                 }
             }
         }
@@ -324,7 +319,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
             drop(sink);
             times.trim(mark);
-            space.trim_edge(number);
+            space.edges[number].trim();
         }
     }
 

@@ -41,8 +41,6 @@ pub(super) struct Directions {
     pub way: [f64; 3],
     /// No component of a direction that these stand for differs by more.
     pub spread: f64,
-    /// Whether the move goes the other way. A family is for both ways.
-    pub backwards: bool,
 }
 
 /// What all directions of a family have in common.
@@ -60,7 +58,6 @@ impl Directions {
             rows: [seen([x, y, 0.0]), seen([-y, x, 0.0]), seen([0.0, 0.0, 1.0])],
             way: turned_back(turn, &way.into()).into(),
             spread,
-            backwards: false,
         }
     }
 
@@ -119,10 +116,7 @@ impl DirectedMotion {
             floor,
             reversed,
             system_rounding,
-            own: Directions {
-                backwards: reversed,
-                ..Directions::new(&turn, ahead, way.map(|x| x / size), 0.0)
-            },
+            own: Directions::new(&turn, ahead, way.map(|x| x / size), 0.0),
             turn,
             ahead,
             way,

@@ -5,11 +5,6 @@ use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
 
-/// A patch or an edge of which a move sweeps a curve: the points at which `g` is 0.
-pub(super) trait Curve {
-    fn at(&self, at: [f64; 2]) -> Sight;
-}
-
 /// A patch as it is seen along a direction.
 pub(super) struct Face<'a> {
     element: &'a PatchForms,
@@ -37,11 +32,9 @@ impl<'a> Face<'a> {
             way: Twisted::new(&Vector3::zeros(), &directions.way.into(), frame),
         }
     }
-}
 
-impl Curve for Face<'_> {
     #[inline]
-    fn at(&self, at: [f64; 2]) -> Sight {
+    pub fn at(&self, at: [f64; 2]) -> Sight {
         let (point, g) = match &self.element.revolution {
             Some(revolution) => {
                 let turned = revolution.at(&self.placing, at);

@@ -3,7 +3,7 @@
 use super::super::Collector;
 use super::chart::{Chart, Region, Witness};
 use super::directed_motion::DirectedMotion;
-use super::face::{Curve, Sight};
+use super::face::{Face, Sight};
 use super::knot::{Knot, KnownLine, Quintic};
 use super::span::{Graph, Known, Span, Spans, is_absent};
 use sweepsim_dexel::Source;
@@ -26,8 +26,8 @@ pub(super) struct Target {
 }
 
 /// The search of lines over charts.
-pub(super) struct Lines<'a, 'b, S, C> {
-    pub curve: &'a C,
+pub(super) struct Lines<'a, 'b, S> {
+    pub face: &'a Face<'a>,
     pub motion: &'a DirectedMotion,
     pub collector: &'a mut Collector<'b>,
     pub source: &'a S,
@@ -40,8 +40,8 @@ pub(super) struct Lines<'a, 'b, S, C> {
 }
 
 /// The lines of one chart.
-pub(super) struct Over<'a, 'b, 'c, S, C> {
-    pub lines: &'c mut Lines<'a, 'b, S, C>,
+pub(super) struct Over<'a, 'b, 'c, S> {
+    pub lines: &'c mut Lines<'a, 'b, S>,
     /// Those that are solved one by one, in the order of `p`.
     targets: Vec<Target>,
     pub chart: &'c Chart,
@@ -50,7 +50,7 @@ pub(super) struct Over<'a, 'b, 'c, S, C> {
     pub accept: [f64; 2],
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
     /// The ranges of `p` and `q` of the lines that a cell may meet on its way.
     pub fn reach(&self, [p, q]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
         [[p.0, p.1], [q.0, q.1 + self.motion.length]]
@@ -66,7 +66,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
 
     /// A point of a chart.
     pub fn sight(&mut self, chart: &Chart, at: [f64; 2]) -> (Sight, Witness) {
-        let sight = self.curve.at(chart.point(at));
+        let sight = self.face.at(chart.point(at));
         self.evaluations += 1;
         let witness = Witness {
             at,
@@ -101,7 +101,7 @@ pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
     !(q - lo < 0.0 || q - hi > length)
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     /// The lines of a window.
     fn window(&mut self, mut window: [[f64; 2]; 2]) {
         let (lines, floor) = (self.lines.collector.lines, &self.lines.motion.floor);
@@ -305,11 +305,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         let z = motion.from + share * motion.rise + z;
         let normal = motion.floor.in_space(normal);
         let size = normal.iter().map(|c| c * c).sum::<f64>();
-        let scale = if size > 0.0 {
-            self.chart.outwards / size.sqrt()
-        } else {
-            1.0
-        };
+        let scale = if size > 0.0 { size.sqrt().recip() } else { 1.0 };
         let normal = normal.map(|c| (c * scale) as f32);
         let source = (self.lines.source)(motion.time(share));
         let jump = self.chart.jump;

@@ -1,7 +1,7 @@
 //! Grazing curves of any patch: see `docs/algorithms/grazing-curves.md`.
 //!
 //! On moves without rotation, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
-//! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it. Sharp edges are solved in the same way, with their own curve in the place of the grazing curve.
+//! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it.
 
 mod at_rest;
 mod chart;
@@ -10,7 +10,6 @@ mod face;
 mod knot;
 mod lines;
 mod newton;
-mod rim;
 mod span;
 mod tree;
 mod walk;
@@ -22,10 +21,9 @@ use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, Size};
 use crate::methods::harvest::unit;
 use at_rest::{Finds, Search, Still, TooMany};
 use directed_motion::{DirectedMotion, Directions, Key};
-use face::{Curve, Face};
+use face::Face;
 use lines::{Lines, Target};
 use nalgebra::{Matrix3, Vector3};
-use rim::Rim;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
@@ -49,16 +47,16 @@ pub(crate) struct Grazing {
     targets: Vec<Target>,
 }
 
-/// The cells of all patches and of all edges, for directions that are almost the same.
+/// The cells of all patches, for directions that are almost the same.
 #[derive(Debug)]
 struct Family {
     key: Key,
     directions: Directions,
-    trees: [Vec<Option<Tree>>; 2],
+    trees: Vec<Option<Tree>>,
 }
 
-/// The patches of a tool, or its edges.
-pub(crate) struct Elements<'a> {
+/// The patches of a tool.
+pub(crate) struct Patches<'a> {
     pub forms: &'a [PatchForms],
     pub cells: &'a mut [Cells],
     /// Which of them are settled.
@@ -83,31 +81,21 @@ impl Grazing {
     /// Forgets a patch: to be called when its cells are dropped.
     pub fn forget(&mut self, patch: usize) {
         for family in &mut self.families {
-            family.trees[0][patch] = None;
+            family.trees[patch] = None;
         }
         for (_, trees) in &mut self.poses {
             trees[patch] = None;
         }
     }
 
-    /// Forgets an edge: to be called when its cells are dropped.
-    pub fn forget_edge(&mut self, edge: usize) {
-        for family in &mut self.families {
-            family.trees[1][edge] = None;
-        }
-    }
-
     /// The number of the family of a motion, which is the last one then.
-    fn family(&mut self, motion: &DirectedMotion, elements: [usize; 2]) -> Option<&mut Family> {
+    fn family(&mut self, motion: &DirectedMotion, patches: usize) -> Option<&mut Family> {
         let (key, directions) = motion.family()?;
         if let Some(known) = self.families.iter().position(|family| family.key == key) {
             let family = self.families.remove(known);
             self.families.push(family);
         } else {
-            let trees = self
-                .families
-                .iter()
-                .flat_map(|family| family.trees.iter().flatten().flatten());
+            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten());
             if trees.map(Tree::len).sum::<usize>() > CELLS {
                 self.families.clear();
             }
@@ -117,68 +105,54 @@ impl Grazing {
             self.families.push(Family {
                 key,
                 directions,
-                trees: elements.map(|count| vec![None; count]),
+                trees: vec![None; patches],
             });
         }
         self.families.last_mut()
     }
 
-    /// Settles the patches and the edges that are not done along a move without rotation, as far as that is possible.
-    pub fn settle(&mut self, tool: [Elements; 2], grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
-        if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
+    /// Settles the patches that are not done along a move without rotation, as far as that is possible.
+    pub fn settle(&mut self, patches: Patches, grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
+        let Patches { forms, cells, done } = patches;
+        if done.iter().all(|done| *done) {
             return;
         }
         let Some(motion) = DirectedMotion::new(grazed.segment, grazed.system_rounding) else {
             return;
         };
         let mut targets = std::mem::take(&mut self.targets);
-        let counts = tool.each_ref().map(|elements| elements.forms.len());
-        let Some(family) = self.family(&motion, counts) else {
+        let Some(family) = self.family(&motion, forms.len()) else {
             return;
         };
         let mut trimmed = Vec::new();
-        for (kind, (elements, trees)) in tool.into_iter().zip(&mut family.trees).enumerate() {
-            let Elements { forms, cells, done } = elements;
-            for number in 0..forms.len() {
-                if done[number] {
-                    continue;
-                }
-                let mark = grazed.collector.mark();
-                let (element, cells, directions) = (&forms[number], &mut cells[number], &family.directions);
-                let tree = trees[number]
-                    .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
-                let of = (element, &mut *cells);
-                done[number] = if element.is_edge() {
-                    let curve = &Rim::new(element, &motion.own);
-                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
-                } else {
-                    let curve = &Face::new(element, &motion.own);
-                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
-                };
-                if !done[number] {
-                    grazed.collector.forget(mark);
-                }
-                if cells.trim() {
-                    trimmed.push((kind, number));
-                }
+        for (number, (element, cells)) in forms.iter().zip(cells).enumerate() {
+            if done[number] {
+                continue;
+            }
+            let (mark, directions) = (grazed.collector.mark(), &family.directions);
+            let tree = family.trees[number]
+                .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
+            let face = &Face::new(element, &motion.own);
+            let of = (element, &mut *cells);
+            done[number] = grazed.element(of, (face, &motion), (tree, directions), source, &mut targets);
+            if !done[number] {
+                grazed.collector.forget(mark);
+            }
+            if cells.trim() {
+                trimmed.push(number);
             }
         }
         self.targets = targets;
-        for (kind, number) in trimmed {
-            match kind {
-                0 => self.forget(number),
-                _ => self.forget_edge(number),
-            }
-        }
+        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }
 
 impl Grazed<'_, '_> {
-    /// Settles one element, and returns whether that was possible; otherwise what was found is of no use.
+    /// Settles one patch, and returns whether that was possible; otherwise what was found is of no use.
     fn element(
         &mut self,
         (element, cells): (&PatchForms, &mut Cells),
-        (curve, motion): (&impl Curve, &DirectedMotion),
+        (face, motion): (&Face, &DirectedMotion),
         (tree, directions): (&mut Tree, &Directions),
         source: &impl Fn(f64) -> Source,
         targets: &mut Vec<Target>,
@@ -196,7 +170,7 @@ impl Grazed<'_, '_> {
             own_looks: 0,
             visits: 0,
             lines: Lines {
-                curve,
+                face,
                 motion,
                 collector: &mut *self.collector,
                 source,

@@ -1,7 +1,6 @@
 //! One point of a grazing curve by Newton's method, and what it decides.
 
 use super::chart::{Region, Witness, solved};
-use super::face::Curve;
 use super::knot::{Knot, KnownLine};
 use super::lines::{Over, meets};
 use sweepsim_dexel::Source;
@@ -19,7 +18,7 @@ enum Verdict {
     Unsure,
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     /// The point of the curve, if it has one in the chart, and the line that is there. `latest`: where that was evaluated last.
     pub fn solve(
         &mut self,

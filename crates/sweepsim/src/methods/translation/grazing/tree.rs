@@ -1,17 +1,16 @@
-//! The cells of a patch, or of an edge, along the grazing curves of a family of directions, divided as far as lines have asked for.
+//! The cells of a patch along the grazing curves of a family of directions, divided as far as lines have asked for.
 
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::directed_motion::Directions;
-use super::rim::{Look, look};
 use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{at_pole, pole};
 
 /// Cells with sides smaller than this are not divided.
-pub(super) const SMALLEST: f64 = 1e-14;
+const SMALLEST: f64 = 1e-14;
 /// Nor are those over which `p` changes by fewer roundings than this.
-pub(super) const FLAT: f64 = 8.0;
+const FLAT: f64 = 8.0;
 
 /// A cell, and where it is in the coordinates `(q, p, z)` from the tip.
 #[derive(Clone, Debug)]
@@ -105,14 +104,6 @@ impl Blur {
         cells.prepare(element, cell);
         let one = [directions.spread; 3];
         let missing = cells.missing(cell);
-        if element.is_edge() {
-            return Self {
-                place: total(&one, &sizes(&cells.position(element, cell))),
-                slopes: [total(&one, &sizes(&cells.slope(element, cell, 0))), 0.0],
-                g: total(&one, &element.largest[1]),
-                g_slopes: [0.0; 2],
-            };
-        }
         Self {
             place: total(&one, &sizes(&cells.position(element, cell))),
             slopes: [0, 1].map(|axis| {
@@ -128,7 +119,7 @@ impl Blur {
 }
 
 /// The bound of the rounding error of `g` on a cell of a patch.
-pub(super) fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
+fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
     let rounding = element.rounding_in([u.0, v.0], [u.1, v.1]);
     ROUNDING * total(&directions.way, &rounding[1])
 }
@@ -138,14 +129,14 @@ fn envelope_of([normals, _]: &[Triples; 2], [_, missing]: &[[f64; 3]; 2], direct
     widened(products(&[directions.way], normals), total(&directions.way, missing))
 }
 
-/// The range of `g` on a cell, but for rounding; of an edge, on one of its two sides.
-pub(super) fn g(element: &PatchForms, cells: &Cells, cell: u32, side: usize, directions: &Directions) -> Range {
-    let fields = cells.field(element, cell, side);
+/// The range of `g` on a cell, but for rounding.
+fn g(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions) -> Range {
+    let fields = cells.field(element, cell, 0);
     envelope_of(&fields, &cells.missing(cell).value, directions)
 }
 
 /// The ranges of its derivatives on a prepared cell, for all directions that differ by so much.
-pub(super) fn slopes_of_g(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
+fn slopes_of_g(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
     [0, 1].map(|axis| {
         let fields = cells.field_slope(cell, 0, axis);
         let range = envelope_of(&fields, &cells.missing(cell).slopes[axis], directions);
@@ -242,16 +233,7 @@ impl Tree {
         system_rounding: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
-        if element.is_edge() {
-            return match look((element, &mut *cells, cell), p, directions, &self.blur, system_rounding) {
-                Look::Empty => State::Empty,
-                Look::Chart(chart) => self.chart(*chart),
-                Look::Mixed => State::Mixed,
-                Look::Least => State::Least,
-                Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, system_rounding),
-            };
-        }
-        let (lo, hi) = g(element, cells, cell, 0, directions);
+        let (lo, hi) = g(element, cells, cell, directions);
         let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (error, blur_of_g) = (error(element, bounds, directions), self.blur.g);
         let within = error + blur_of_g;
@@ -281,7 +263,7 @@ impl Tree {
         };
         let rest = at_pole(&element.poles, bounds, (widened((lo, hi), within), of_g), |[u, v]| {
             let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
-            let (lo, hi) = g(element, cells, part, 0, directions);
+            let (lo, hi) = g(element, cells, part, directions);
             let within = self::error(element, [u, v], directions) + blur_of_g;
             let found = (lo <= within && hi >= -within).then(|| {
                 cells.prepare(element, part);
