@@ -23,7 +23,7 @@ mod vertical_arcs;
 pub(crate) use at_rest::{Neighbour, leaning, placements};
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
-pub(crate) use grazing::{Grazed, Grazing, Patches, Resting};
+pub(crate) use grazing::{Grazed, Grazing, Patches};
 pub(crate) use level_arcs::sweep_level_arc;
 pub(crate) use rows::numbers;
 pub(crate) use straight::sweep_straight;

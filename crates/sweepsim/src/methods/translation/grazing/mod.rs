@@ -3,7 +3,6 @@
 //! On moves without rotation, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
 //! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it.
 
-mod at_rest;
 mod chart;
 mod directed_motion;
 mod face;
@@ -17,13 +16,9 @@ mod walk;
 use super::{Ceiling, Collector};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, Size};
-use crate::methods::harvest::unit;
-use at_rest::{Finds, Search, Still, TooMany};
 use directed_motion::{DirectedMotion, Directions, Key};
 use face::Face;
 use lines::{Lines, Target};
-use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
@@ -32,8 +27,6 @@ use walk::Walk;
 
 /// The number of families of directions that are kept.
 const FAMILIES: usize = 64;
-/// The number of orientations that are kept.
-const POSES: usize = 8;
 /// The number of cells of all of them.
 const CELLS: usize = 100_000;
 
@@ -42,8 +35,6 @@ const CELLS: usize = 100_000;
 pub(crate) struct Grazing {
     /// The latest one comes last.
     families: Vec<Family>,
-    /// The same for orientations at rest.
-    poses: Vec<(Matrix3<f64>, Vec<Option<Still>>)>,
     targets: Vec<Target>,
 }
 
@@ -82,9 +73,6 @@ impl Grazing {
     pub fn forget(&mut self, patch: usize) {
         for family in &mut self.families {
             family.trees[patch] = None;
-        }
-        for (_, trees) in &mut self.poses {
-            trees[patch] = None;
         }
     }
 
@@ -188,96 +176,5 @@ impl Grazed<'_, '_> {
         statistics.boxes += looks;
         statistics.evaluations += evaluations;
         outcome.is_ok()
-    }
-}
-
-/// A search of the lines of a tool at rest.
-pub(crate) struct Resting<'a, 'b> {
-    pub pose: (Matrix3<f64>, Vector3<f64>),
-    /// The motions before and after.
-    pub sides: [JointSide; 2],
-    pub size: Size,
-    pub collector: &'a mut Collector<'b>,
-    /// The longest last step of Newton's method.
-    pub last: f64,
-    pub source: Source,
-    pub monitor: &'a dyn Monitor,
-}
-
-/// Puts crossings of a patch at rest.
-struct Rests<'a, 'b> {
-    collector: &'a mut Collector<'b>,
-    source: Source,
-}
-
-impl Finds for Rests<'_, '_> {
-    fn found(&mut self, line: usize, from: [f64; 2], at: [f64; 2], seen: &OnPlaced, orientation: i8) {
-        let negative = |side: Near<2>| i8::from(side.at(&at, &from) < 0.0);
-        let change = negative(seen.after) - negative(seen.before);
-        if change != 0 {
-            let z = seen.height.at(&at, &from);
-            let jump = -orientation * change;
-            self.collector.crossing(line, z, jump, unit(seen.normal), self.source);
-        }
-    }
-
-    fn open(&mut self, line: usize) {
-        self.collector.open(line);
-    }
-}
-
-impl Grazing {
-    /// Settles the patches that are not done at rest between two moves without rotation, as far as that is possible.
-    pub fn rest(&mut self, (elements, cells): (&[PatchForms], &mut [Cells]), resting: &mut Resting, done: &mut [bool]) {
-        let (turn, tip) = resting.pose;
-        if let Some(known) = self.poses.iter().position(|(other, _)| *other == turn) {
-            let pose = self.poses.remove(known);
-            self.poses.push(pose);
-        } else {
-            let trees = self.poses.iter().flat_map(|(_, trees)| trees.iter().flatten());
-            if trees.map(Still::len).sum::<usize>() > CELLS || self.poses.len() == POSES {
-                self.poses.clear();
-            }
-            self.poses.push((turn, vec![None; elements.len()]));
-        }
-        let Some((_, trees)) = self.poses.last_mut() else {
-            return;
-        };
-        let mut trimmed = Vec::new();
-        for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
-            if done[number] {
-                continue;
-            }
-            let lines = resting.collector.lines;
-            let mark = resting.collector.mark();
-            let mut search = Search {
-                map: &mut PlacedMap::new(element, &mut *cells, resting.pose, resting.sides, resting.size),
-                lines,
-                tip: [tip.x, tip.y],
-                last: resting.last,
-                monitor: resting.monitor,
-                looks: 0,
-                evaluations: 0,
-            };
-            let mut rests = Rests {
-                collector: &mut *resting.collector,
-                source: resting.source,
-            };
-            let outcome = trees[number]
-                .get_or_insert_with(Still::new)
-                .walk(&mut search, &mut rests);
-            let Search { looks, evaluations, .. } = search;
-            let statistics = &mut resting.collector.harvest.statistics;
-            statistics.boxes += looks;
-            statistics.evaluations += evaluations;
-            match outcome {
-                Ok(()) => done[number] = true,
-                Err(TooMany) => resting.collector.forget(mark),
-            }
-            if cells.trim() {
-                trimmed.push(number);
-            }
-        }
-        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }

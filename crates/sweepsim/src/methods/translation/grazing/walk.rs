@@ -1,6 +1,5 @@
 //! A walk through the cells of a patch along one move: those with lines on their way are looked at, and divided where no move has asked for that before.
 
-use super::at_rest::TooMany;
 use super::directed_motion::{DirectedMotion, Directions};
 use super::lines::Lines;
 use super::tree::{Known, Tree};
@@ -13,6 +12,9 @@ use sweepsim_solve::Monitor;
 const MOST: u64 = 20_000;
 /// So is one that takes more looks at cells for its own direction alone, which no other move can use.
 const MOST_OWN: u64 = 400;
+
+/// There are too many cells.
+pub(super) struct TooMany;
 
 /// What comes next in a walk.
 enum Next {
