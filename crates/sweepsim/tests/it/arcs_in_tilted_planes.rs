@@ -1,4 +1,5 @@
-//! Arcs about the axis of a tool that leans or lies, which charts solve: against charts alone, which also solve the joints, and against samples in time.
+//! Arcs about the axis of a tool that leans or lies, which charts solve: against charts alone, which also solve the
+//! joints, and against samples in time.
 
 use crate::arcs_along_dexels::least;
 use crate::arcs_in_closed_form::{check_near_material, grid, small};
