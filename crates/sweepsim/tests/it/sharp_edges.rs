@@ -1,5 +1,5 @@
-//! Sharp edges of free-form tools along moves without rotation, which charts solve: against the general method, which also solves
-//! patches and joints, and line by line.
+//! Sharp edges of free-form tools along moves without rotation, which charts solve: against the general method, which
+//! also solves patches and joints, and line by line.
 
 use crate::displaced::agree_with;
 use crate::freeform::block;
