@@ -69,8 +69,6 @@ pub(crate) struct Outline {
     pub(crate) complete: bool,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) rims: Vec<Rim>,
-    /// The patches, and the edges, that are parts of one surface or circle about the axis, in ascending order: with a closed form or without.
-    pub(crate) rings: [Vec<Range<usize>>; 2],
 }
 
 impl Outline {
@@ -139,16 +137,7 @@ impl Outline {
         };
         let rims = curves.windows(2).filter_map(rim).collect();
         let complete = pieces.len() == curves.len();
-        let rings = [
-            curves.iter().map(|curve| curve.patches.clone()).collect(),
-            curves.iter().map(|curve| curve.edges.clone()).collect(),
-        ];
-        Some(Self {
-            complete,
-            pieces,
-            rims,
-            rings,
-        })
+        Some(Self { complete, pieces, rims })
     }
 }
 

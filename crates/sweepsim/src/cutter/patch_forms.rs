@@ -303,11 +303,6 @@ impl PatchForms {
         self.layout.fields[field].degrees[0] + 1
     }
 
-    /// Whether these are the forms of an edge, with the fields of its two faces.
-    pub fn is_edge(&self) -> bool {
-        self.layout.slopes.len() == 1
-    }
-
     /// The frame of [`PatchForms::revolution`] in the tool; `None` if it is the tool's frame.
     pub fn frame(&self) -> Option<&LocalFrame> {
         self.frame.as_ref()

@@ -125,13 +125,6 @@ impl<'a> PlacedMap<'a> {
         }
     }
 
-    /// The signs of `g` on a cell, before and after: whether it is negative, if it has one sign.
-    pub fn signs(&self, cell: u32) -> [Option<bool>; 2] {
-        let field = self.cells.field(self.element, cell, 0);
-        let missing = self.cells.missing(cell);
-        [&self.before, &self.after].map(|side| side.negative(&field, missing, self.element))
-    }
-
     /// The ranges of `X` and `Y` over a cell, from the tip.
     pub fn ranges(&self, cell: u32) -> [(f64, f64); 2] {
         let position = self.cells.position(self.element, cell);
@@ -139,12 +132,6 @@ impl<'a> PlacedMap<'a> {
             let (lo, hi) = products(&self.row(r), &position);
             (lo - self.size.system_rounding, hi + self.size.system_rounding)
         })
-    }
-
-    /// `X` and `Y` of a point, from the tip.
-    pub fn seen_from_tip(&self, at: [f64; 2]) -> [f64; 2] {
-        let place = self.turn * self.element.face(at).0;
-        [place.x, place.y]
     }
 
     fn row(&self, r: usize) -> [[f64; 3]; 1] {

@@ -5,7 +5,7 @@ use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, ROOT, Twist};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::method::CrossingMethod;
 use crate::methods::search::Search;
-use crate::methods::translation::{self, Collector, Neighbour, Resting};
+use crate::methods::translation::{self, Collector, Neighbour};
 use crate::methods::turning;
 use crate::methods::workspace::Workspace;
 use crate::time::over::DyadicInterval;
@@ -15,9 +15,6 @@ use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd, turned_back};
 use sweepsim_solve::Preimage;
-
-/// Charts of a tool at rest are made to be kept for other joints if so many parts are counted together.
-const SEVERAL: usize = 4;
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> JointSide {
@@ -106,45 +103,11 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
     }
 
-    /// Whether the tool turns neither before nor after a placement.
-    fn is_between_translations(&self, at: usize, end: SegmentEnd) -> bool {
-        self.neighbours(at, end)
-            .all(|part| part.segment.is_arc() && part.segment.turns().len() == 1)
-    }
-
-    /// The parts before and after a placement.
-    fn neighbours(&self, at: usize, end: SegmentEnd) -> impl Iterator<Item = &PathPart> {
-        let before = (end == SegmentEnd::Start).then(|| at.checked_sub(1)).flatten();
-        before.into_iter().chain([at]).map(|k| &self.parts[k])
-    }
-
-    /// The turn and the motions of a tool of revolution at a placement between parts along which it stands: turned about its own axis, it is the same, so that one orientation serves all of
-    /// these, and turns about that axis move none of its points out of its surface.
-    fn standing(&self, at: usize, end: SegmentEnd) -> Option<(Matrix3<f64>, [JointSide; 2])> {
-        if !self.closed || self.outline.is_none() || !self.neighbours(at, end).all(translation::stands) {
-            return None;
-        }
-        let along = |part: usize, end: SegmentEnd| match Neighbour::of(&self.parts[part], end) {
-            Some(Neighbour::Along(travel)) => Some(JointSide::Moving(Twist {
-                spin: [0.0; 3],
-                travel,
-                sizes: [[0.0; 3], travel.map(f64::abs)],
-            })),
-            _ => None,
-        };
-        let sides = match (end, at.checked_sub(1)) {
-            (SegmentEnd::Finish, _) => [along(at, end)?, JointSide::Beyond(true)],
-            (SegmentEnd::Start, None) => [JointSide::Beyond(false), along(at, end)?],
-            (SegmentEnd::Start, Some(before)) => [along(before, SegmentEnd::Finish)?, along(at, end)?],
-        };
-        Some((Matrix3::identity(), sides))
-    }
-
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
     pub fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
         space.done.placed.fill(false);
         let segment = &self.parts[at].segment;
-        let (mut pose, source) = match end {
+        let (pose, source) = match end {
             SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
             SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
         };
@@ -157,28 +120,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                 return;
             }
         }
-        let mut sides = sides(self.parts, at, end);
-        let standing = self.standing(at, end);
-        let is_still = standing.is_some() || self.is_between_translations(at, end);
-        if let Some(standing) = standing {
-            (pose.0, sides) = standing;
-        }
-        if self.closed && self.parts.len() >= SEVERAL && is_still {
-            let mut resting = Resting {
-                pose,
-                sides,
-                size: self.size,
-                collector: &mut Collector {
-                    lines: self.lines,
-                    harvest,
-                },
-                last: space.solvers.placed.options.accept,
-                source,
-                monitor: self.monitor,
-            };
-            let tool = (&self.cutter.patches[..], &mut space.patches[..]);
-            space.grazing.rest(tool, &mut resting, &mut space.done.placed);
-        }
+        let sides = sides(self.parts, at, end);
         for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
             if space.done.placed[number] {
                 continue;

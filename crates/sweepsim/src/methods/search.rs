@@ -9,7 +9,7 @@ use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
-use crate::methods::translation::{self, Ceiling, Collector, Elements, Grazed, Heading};
+use crate::methods::translation::{self, Ceiling, Collector, Grazed, Heading, Patches};
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
@@ -91,7 +91,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             segment,
             level_arc,
             vertical_arc,
-            arc_about_axis,
             ..
         } = &self.parts[at];
         let mut collector = Collector {
@@ -101,16 +100,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
-        if let Some(arc) = arc_about_axis {
-            let arc = (
-                arc,
-                segment,
-                translation::slack(self.size.system_rounding),
-                self.height_tolerance,
-            );
-            translation::sweep_arc_about_axis(outline, arc, &mut collector, by_share, settled);
-            return;
-        }
         let collector = (&mut collector, self.ceiling);
         if let Some(vertical_arc) = vertical_arc {
             let arc = (
@@ -135,12 +124,10 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles the patches and edges that have no closed form along a move without rotation, or along an arc with which the tool turns.
+    /// Settles the patches that have no closed form along a move without rotation.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart { segment, level_arc, .. } = &self.parts[at];
         let mut grazed = Grazed {
-            segment,
-            level_arc: level_arc.as_ref(),
+            segment: &self.parts[at].segment,
             collector: &mut Collector {
                 lines: self.lines,
                 harvest,
@@ -151,29 +138,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
         };
-        let rings = self
-            .outline
-            .filter(|_| level_arc.is_some())
-            .map(|outline| &outline.rings);
-        let [of_patches, of_edges] = rings.map_or([&[][..]; 2], |rings| rings.each_ref().map(|list| &list[..]));
-        let patches = Elements {
+        let patches = Patches {
             forms: &self.cutter.patches,
             cells: &mut space.patches,
             done: &mut space.done.patches,
-            rings: of_patches,
         };
-        let edges = Elements {
-            forms: &self.cutter.edges,
-            cells: &mut space.edges,
-            done: &mut space.done.edges,
-            rings: of_edges,
-        };
-        let source = |t: f64| match level_arc {
-            // Arcs have constant speed.
-            Some(_) => self.source_after(at, t),
-            None => self.source(at, t),
-        };
-        space.grazing.settle([patches, edges], &mut grazed, &source);
+        let source = |t: f64| self.source(at, t);
+        space.grazing.settle(patches, &mut grazed, &source);
     }
 
     /// Settles what it can of a move that turns, line by line.
@@ -247,7 +218,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                         .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
                     drop(sink);
                     times.trim(own);
-                    space.trim_edge(number);
+                    space.edges[number].trim();
                 }
             }
         }
@@ -348,7 +319,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
             drop(sink);
             times.trim(mark);
-            space.trim_edge(number);
+            space.edges[number].trim();
         }
     }
 

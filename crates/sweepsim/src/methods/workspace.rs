@@ -88,13 +88,6 @@ impl Workspace {
             self.grazing.forget(number);
         }
     }
-
-    /// The same of an edge.
-    pub fn trim_edge(&mut self, number: usize) {
-        if self.edges[number].trim() {
-            self.grazing.forget_edge(number);
-        }
-    }
 }
 
 impl Solvers {

@@ -37,7 +37,7 @@ impl PathPart {
     /// A straight move as two, by way of a point beside its middle; `None` for other moves, and for turns whose halves would have clocks of their own.
     fn halves(&self, tolerances: &Tolerances, attempt: usize) -> Option<[Self; 2]> {
         let is_straight = self.segment.is_arc() && self.segment.time(0.25) == 0.25;
-        if !is_straight || self.level_arc.is_some() || self.vertical_arc.is_some() || self.arc_about_axis.is_some() {
+        if !is_straight || self.level_arc.is_some() || self.vertical_arc.is_some() {
             return None;
         }
         let [from, to] = self.segment.tips().map(Vector3::from);

@@ -1,6 +1,6 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
-use crate::time::circles::{ArcAboutAxis, LevelArc, VerticalArc, VerticalArcPart, tip_arc};
+use crate::time::circles::{LevelArc, VerticalArc, VerticalArcPart, tip_arc};
 use crate::time::joined::Stretch;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
@@ -12,12 +12,10 @@ use sweepsim_motion::{Path, Segment};
 #[derive(Clone, Debug)]
 pub(crate) struct PathPart {
     pub segment: Segment,
-    /// The same as a circle or helix about a line along the dexels, for a tool that stands along them and turns with it, as one of revolution may.
+    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
     pub level_arc: Option<LevelArc>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
     pub vertical_arc: Option<VerticalArc>,
-    /// The same as a circle about the tool's axis, for any tool of revolution that does not stand along the dexels.
-    pub arc_about_axis: Option<ArcAboutAxis>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -36,7 +34,6 @@ impl PathPart {
             segment,
             level_arc: None,
             vertical_arc: None,
-            arc_about_axis: None,
             number,
             start,
             share,
@@ -151,32 +148,15 @@ pub(crate) fn parts(
             let by = [displaced(from, [last, own]), displaced(to, [own, next])];
             last = own;
             let limit = tolerances.circle_deviation();
-            let level_arc = if carried {
-                None
-            } else {
-                LevelArc::parts(path, to - 1 - first, frame, (&segments, symmetric, reach), (by, limit))
-            };
-            let arc_about_axis = match level_arc {
-                None if symmetric => {
-                    ArcAboutAxis::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit))
-                }
+            let level_arc = symmetric
+                .then(|| LevelArc::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit)))
+                .flatten();
+            let vertical_arc = match level_arc {
+                None if symmetric => VerticalArc::parts(path, to - 1 - first, (frame, reach), (by, limit)),
                 _ => None,
             };
-            let vertical_arc = match (&level_arc, &arc_about_axis) {
-                (None, None) if symmetric => VerticalArc::parts(path, to - 1 - first, (frame, reach), (by, limit)),
-                _ => None,
-            };
-            let number = to - 1;
             match level_arc {
-                Some(level_arc) => parts.extend(with_shares(number, level_arc, |part, level_arc| {
-                    part.level_arc = Some(level_arc)
-                })),
-                None if arc_about_axis.is_some() => {
-                    let arc_about_axis = arc_about_axis.unwrap_or_default();
-                    parts.extend(with_shares(number, arc_about_axis, |part, arc| {
-                        part.arc_about_axis = Some(arc)
-                    }));
-                }
+                Some(level_arc) => parts.extend(on_level_arcs(to - 1, level_arc)),
                 None if vertical_arc.is_some() => {
                     let vertical_arc = vertical_arc.into_iter().flatten();
                     parts.extend(vertical_arc.map(|part| on_vertical_arc(to - 1, part)));
@@ -254,16 +234,11 @@ fn carried_to(
 }
 
 /// The parts of one move, of equal duration.
-fn with_shares<C>(
-    number: usize,
-    parts: Vec<(C, Segment)>,
-    put: impl Fn(&mut PathPart, C),
-) -> impl Iterator<Item = PathPart> {
+fn on_level_arcs(number: usize, parts: Vec<(LevelArc, Segment)>) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
-    parts.into_iter().enumerate().map(move |(n, (circle, segment))| {
-        let mut part = PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32));
-        put(&mut part, circle);
-        part
+    parts.into_iter().enumerate().map(move |(n, (arc, segment))| PathPart {
+        level_arc: Some(arc),
+        ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
     })
 }
 

@@ -123,7 +123,6 @@ impl<'a> MovingSolid<'a> {
                     segment: part.segment.part(from, to).displaced(by),
                     level_arc: None,
                     vertical_arc: None,
-                    arc_about_axis: None,
                     number: part.number,
                     start: (start + from * share) as f32,
                     share: ((to - from) * share) as f32,

@@ -1,5 +1,5 @@
-//! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and against
-//! samples in time.
+//! Level arcs and helices with which a tool of any shape turns, which charts solve: against charts alone, which also
+//! solve joints and straight moves, and against samples in time.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, small};
 use crate::grazing_curves::tools;
@@ -229,19 +229,6 @@ proptest! {
                 prop_assert!((only.lower.z - low).abs() < error && (only.upper.z - high).abs() < error, "{:?}: {only:?} {low} {high}", (i, j));
             }
         }
-    }
-}
-
-/// Less than half of the boxes that charts take.
-#[test]
-fn few_boxes() {
-    let arcs: Vec<Arc> = (0..12).map(|k| [2.0, 0.6 * f64::from(k), 2.5, 0.0]).collect();
-    let path = turning([1.1, 0.3, 0.2], 0.4, &arcs, [0.5, 0.2, 0.0]);
-    for (name, tool) in &tools() {
-        let [curves, charts] = agree(name, tool, &path, &grid([41, 43]), TOLERANCE).expect("the same");
-        let [own, other] = [&curves.statistics, &charts.statistics];
-        println!("{name}: {} boxes, by charts {}", own.boxes, other.boxes);
-        assert!(2 * own.boxes < other.boxes, "{name}: {own:?} {other:?}");
     }
 }
 

@@ -1,4 +1,5 @@
-//! Level arcs and helices of tools whose profile is a spline, by their grazing curves, against charts.
+//! Level arcs and helices of tools whose profile is a spline, which charts solve: against charts alone, which also
+//! solve the rest of the profile, joints and straight moves.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, check_tool_near_material, grid, path, small};
 use crate::translations::{TOLERANCE, UP, agree, cases};
@@ -183,18 +184,6 @@ proptest! {
     }
 }
 
-/// Far fewer boxes than charts take.
-#[test]
-fn few_boxes() {
-    let arcs: Vec<Arc> = (0..12).map(|k| [2.0, 0.6 * f64::from(k), 2.5, 0.0]).collect();
-    let path = path([1.1, 0.3, 0.2], &arcs, [0.5, 0.2, 0.0]);
-    for (name, tool) in &tools() {
-        let [curves, charts] = agree(name, tool, &path, &grid([41, 43]), TOLERANCE).expect("the same");
-        let [own, other] = [&curves.statistics, &charts.statistics];
-        assert!(4 * own.boxes < other.boxes, "{name}: {own:?} {other:?}");
-    }
-}
-
 /// The result does not depend on which arcs were made before on the same thread.
 #[test]
 fn the_same_bytes_whatever_came_before() {
@@ -206,10 +195,9 @@ fn the_same_bytes_whatever_came_before() {
     assert_same_bytes(tool, &path);
 }
 
-/// A line so near to where a level part of the profile bounds the sweep that its patch is left to charts: then all
-/// patches around the axis are.
+/// A line very near to where a level part of the profile bounds the sweep.
 #[test]
-fn patches_about_the_axis_are_left_to_charts_together() {
+fn beside_a_level_part() {
     let path = path(
         [1.544_972_653, -1.976_608_945, 0.0],
         &[[1.381_662_296, -1.854_257_28, -1.702_973_669, 0.0]],

@@ -43,9 +43,20 @@ fn without_slivers(list: &[Interval], tolerance: f64) -> Vec<Interval> {
 /// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside
 /// it.
 pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
+    agree_with(Method::General, name, tool, path, (grid, tolerance))
+}
+
+/// The same with another method than the general one.
+pub fn agree_with(
+    other: Method,
+    name: &str,
+    tool: &Tool,
+    path: &Path,
+    (grid, tolerance): (&Grid, f64),
+) -> Result<[Sweep; 2], TestCaseError> {
     let on =
         |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
-    let [closed, charts] = [Method::Mixed, Method::General].map(|method| on(grid, method));
+    let [closed, charts] = [Method::Mixed, other].map(|method| on(grid, method));
     for found in [&closed, &charts] {
         prop_assert!(found.statistics.unresolved.is_empty(), "{name}: {:?}", found.statistics);
     }

@@ -1,5 +1,7 @@
-//! Sharp edges of free-form tools along moves without rotation, by their own curves, against the general method.
+//! Sharp edges of free-form tools along moves without rotation, which charts solve: against the general method, which
+//! also solves patches and joints, and line by line.
 
+use crate::displaced::agree_with;
 use crate::freeform::block;
 use crate::grazing_curves::{bud, carried};
 use crate::translations::{TOLERANCE, agree, cases};
@@ -226,20 +228,13 @@ proptest! {
     }
 }
 
-/// Edges take far fewer boxes than by charts: the guard that the tests above do not compare charts with charts.
-#[test]
-fn few_boxes_along_many_moves() {
-    let mut tips = Vec::new();
-    for row in 0..4 {
-        for k in 0..9 {
-            let x = if row % 2 == 0 { f64::from(k) } else { f64::from(8 - k) };
-            tips.push([x - 4.0, 1.5 * f64::from(row) - 2.0, 0.0]);
-        }
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases().div_ceil(4), ..ProptestConfig::default() })]
+
+    /// Against a method that solves each line by itself: edges are left to charts, with which the tests above compare.
+    #[test]
+    fn as_line_by_line(number in 0..10_000_u64, turn in turn(), tips in prop::collection::vec(tip(), 2..4)) {
+        let (name, tool) = tool(number);
+        agree_with(Method::Lines, &name, &tool, &carried(&tips, turn), (&grid([13, 11]), TOLERANCE))?;
     }
-    // All patches of a block that leans are empty but for their signs, so that only edges take boxes.
-    let (name, tool) = tool(1);
-    let moves = carried(&tips, [0.3, -0.2, 0.5]);
-    let [curves, general] = agree(&name, &tool, &moves, &grid([41, 43]), TOLERANCE).expect("the same");
-    let [own, other] = [&curves.statistics, &general.statistics];
-    assert!(10 * own.boxes < other.boxes, "{own:?} {other:?}");
 }

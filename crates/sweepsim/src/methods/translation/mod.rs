@@ -9,7 +9,6 @@
 //! solved by the general method.
 
 mod arc_place;
-mod arcs_about_axis;
 mod at_rest;
 mod ceiling;
 mod curves;
@@ -21,11 +20,10 @@ mod straight;
 mod stretches;
 mod vertical_arcs;
 
-pub(crate) use arcs_about_axis::sweep_arc_about_axis;
 pub(crate) use at_rest::{Neighbour, leaning, placements};
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
-pub(crate) use grazing::{Elements, Grazed, Grazing, Resting};
+pub(crate) use grazing::{Grazed, Grazing, Patches};
 pub(crate) use level_arcs::sweep_level_arc;
 pub(crate) use rows::numbers;
 pub(crate) use straight::sweep_straight;

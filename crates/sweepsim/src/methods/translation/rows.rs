@@ -1,9 +1,8 @@
 //! The lines of a lattice in a rectangle along a move, or in a sector about the centre of an arc, row by row.
 
-mod ground;
+mod floor;
 mod sector;
 
-pub(super) use ground::{Ground, Ring};
 pub(super) use sector::Sector;
 
 use crate::methods::lattice::Lattice;

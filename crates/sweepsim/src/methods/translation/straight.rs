@@ -1,6 +1,6 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::curves::{Graph, GraphCrossing, Heading, quarters, ring, slant, torus};
+use super::curves::{Graph, GraphCrossing, Heading, ring, slant, torus};
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
@@ -129,8 +129,8 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
                     let graphs = torus::stretches(heading, centre, radius, angles, out)?;
                     self.all(&graphs);
                 } else {
-                    let graphs = quarters::stretches(heading, centre, radius, angles, out)?;
-                    self.all(&graphs);
+                    // By the grazing curves of its patches.
+                    return None;
                 }
             }
         }

@@ -1,16 +1,13 @@
-//! Level arcs and helices with which a tool turns that stands along the dexels, as circles to the last digit.
+//! Level arcs and helices of a tool of revolution that stands along the dexels, which may turn with them, as circles to the last digit.
 
 use super::tip_arc::tip_arc;
-use nalgebra::{Matrix3, Rotation2, Rotation3, Vector2, Vector3};
+use nalgebra::{Rotation2, Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Move, Path, Pose, Segment, TipArc};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
-/// A tool without symmetry turns with an arc if its directions at the ends of all parts differ by less than this from those of the arc: the
-/// arc is then as long as the tool turns, and [`LevelArc::parts`] limits by how much points are off.
-const SAME_TURN: f64 = 1e-3;
 
 /// A turn about a line parallel to the dexels, at constant speed, which may rise.
 #[derive(Clone, Copy, Debug)]
@@ -22,84 +19,58 @@ pub(crate) struct LevelArc {
     pub from: [f64; 2],
     /// At most 90°, positive counter-clockwise.
     pub angle: f64,
-    /// The direction of the tool's `x` at the start, unless the tool is of revolution.
-    pub tool_x: Option<[f64; 2]>,
 }
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 impl LevelArc {
     /// The arc between two points, and its motion. `None` if it is not that of an arc.
-    fn between(
-        [a, b]: [Vector3<f64>; 2],
-        sides: Option<[Vector2<f64>; 2]>,
-        angle: f64,
-        reach: f64,
-    ) -> Option<(Self, Segment)> {
+    fn between([a, b]: [Vector3<f64>; 2], angle: f64, reach: f64) -> Option<(Self, Segment)> {
         let chord = (b - a).xy();
         let left = Vector2::new(-chord.y, chord.x);
         let centre = (a + (b - a) * 0.5).xy() + left * (0.5 / (0.5 * angle).tan());
         let out = a.xy() - centre;
         let radius = out.norm();
-        let pose = |tip: Vector3<f64>, side: Option<Vector2<f64>>| match side {
-            Some(side) => Pose::with_side(tip.into(), UP, [side.x, side.y, 0.0]).ok(),
-            None => Pose::new(tip.into(), UP).ok(),
-        };
-        let (from, to) = (
-            pose(a, sides.map(|[side, _]| side))?,
-            pose(b, sides.map(|[_, side]| side))?,
-        );
+        let pose = |tip: Vector3<f64>| Pose::new(tip.into(), UP).ok();
+        let (from, to) = (pose(a)?, pose(b)?);
         let arc = TipArc::new([centre.x, centre.y, a.z], UP, angle).ok()?;
         let path = Path::with_moves(vec![from, to], vec![Move::arc(arc)]).ok()?;
         // Not more than 90°: one segment, if any deviation is allowed.
-        let mut segments = match sides {
-            Some(_) => path.segments(0, reach, f64::INFINITY),
-            None => path.segments_of_symmetric(0, reach, f64::INFINITY),
-        };
+        let mut segments = path.segments_of_symmetric(0, reach, f64::INFINITY);
         let arc = Self {
             centre: centre.into(),
             radius,
             from: (out / radius).into(),
             angle,
-            tool_x: sides.map(|[side, _]| side.into()),
         };
         (segments.len() == 1 && radius.is_finite() && radius > 0.0).then(|| (arc, segments.remove(0)))
     }
 
-    /// The parts of a move, in a frame: as many as its `segments`, of equal length, with the ends of the tip displaced. `None` if the move is not one of these,
-    /// or if its law deviates by more than `limit` from a circle. The turns of the segments matter only if the tool is not `symmetric`.
+    /// The parts of a move, in a frame: `count` of equal length, with the ends of the tip displaced. `None` if the move is not one of these,
+    /// or if its law deviates by more than `limit` from a circle.
     pub fn parts(
         path: &Path,
         number: usize,
         frame: &Frame,
-        (segments, symmetric, reach): (&[Segment], bool, f64),
+        (count, reach): (usize, f64),
         (by, limit): ([Vector3<f64>; 2], f64),
     ) -> Option<Vec<(Self, Segment)>> {
         let (arc, still) = tip_arc(&path.way(number))?;
         let ends = [path.pose(number), path.pose(number + 1)];
         let upright = ends.iter().all(|pose| frame.turn_from_world(pose.axis()) == UP);
         let [x, y, sign] = frame.turn_from_world(arc.normal());
-        if (symmetric && !still) || !upright || [x, y] != [0.0; 2] || sign.abs() != 1.0 {
+        if !still || !upright || [x, y] != [0.0; 2] || sign.abs() != 1.0 {
             return None;
         }
-        let count = segments.len();
         let [from, to] = ends.map(|pose| Vector3::from(frame.from_world(pose.tip())));
         let centre = Vector3::from(frame.from_world(arc.centre())).xy();
         let out = from.xy() - centre;
-        let of_arc = arc.angle() * sign;
-        let (angle, sides) = if symmetric {
-            (of_arc, None)
-        } else {
-            let (angle, ends) = turned_with(segments, frame, of_arc)?;
-            (angle, Some(ends))
-        };
+        let angle = arc.angle() * sign;
         let turned = |share: f64| centre + Rotation2::new(angle * share) * out;
         let missing = to.xy() - turned(1.0);
-        // A tool that turns by a little more or less than the arc stays rigid: the arc is as long as it turns.
-        let off = missing.norm() + (angle - of_arc).abs() * (out.norm() + reach);
         let step = angle / count as f64;
         let long = out.norm() * step.abs() > SHORTEST * (by[0].norm() + by[1].norm());
-        if !(off <= limit && long && step.abs() <= FRAC_PI_2 * (1.0 + 1e-9)) {
+        if !(missing.norm() <= limit && long && step.abs() <= FRAC_PI_2 * (1.0 + 1e-9)) {
             return None;
         }
         let point = |n: usize| {
@@ -112,18 +83,8 @@ impl LevelArc {
             };
             place + by[0] + (by[1] - by[0]) * share
         };
-        let side = |n: usize, [first, last]: [Vector2<f64>; 2]| {
-            if n == count {
-                last
-            } else {
-                Rotation2::new(step * n as f64) * first
-            }
-        };
         (0..count)
-            .map(|n| {
-                let sides = sides.map(|ends| [side(n, ends), side(n + 1, ends)]);
-                Self::between([point(n), point(n + 1)], sides, step, reach)
-            })
+            .map(|n| Self::between([point(n), point(n + 1)], step, reach))
             .collect()
     }
 
@@ -157,19 +118,4 @@ impl LevelArc {
         let [x, y] = self.out(share);
         [-y * self.side(), x * self.side()]
     }
-}
-
-/// The angle by which a tool that stands along the dexels turns during a move, and the directions of its `x` at both ends, if it turns in step with an arc
-/// by this angle.
-fn turned_with(segments: &[Segment], frame: &Frame, angle: f64) -> Option<(f64, [Vector2<f64>; 2])> {
-    let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
-    let step = angle / segments.len() as f64;
-    let [start, end] = [segments.first()?.start(), segments.last()?.end()].map(|own| turn * own);
-    let in_step = segments.iter().enumerate().all(|(n, segment)| {
-        let expected = Rotation3::from_axis_angle(&Vector3::z_axis(), step * (n + 1) as f64) * start;
-        (turn * segment.end() - expected).norm() < SAME_TURN
-    });
-    let [first, last] = [start, end].map(|own| own.column(0).xy().normalize());
-    let near = Rotation2::new(angle) * first;
-    in_step.then(|| (angle + near.perp(&last).atan2(near.dot(&last)), [first, last]))
 }

@@ -60,7 +60,7 @@ fn cuts(from: f64, angle: f64) -> Vec<f64> {
 }
 
 /// The motion along an arc between two points; not more than 90°: one segment, if any deviation is allowed.
-pub(super) fn circle([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, reach: f64) -> Option<Segment> {
+fn circle([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, reach: f64) -> Option<Segment> {
     let poses = [a, b].map(|tip| Pose::new(tip.into(), axis).ok());
     let [Some(from), Some(to)] = poses else { return None };
     let path = Path::with_moves(vec![from, to], vec![Move::arc(arc)]).ok()?;

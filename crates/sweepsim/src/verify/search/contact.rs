@@ -78,7 +78,6 @@ impl Arena<'_> {
             segment: part.segment.moved(&Matrix3::identity(), shift),
             level_arc: part.level_arc.map(|level_arc| level_arc.moved([shift[0], shift[1]])),
             vertical_arc: part.vertical_arc.map(|vertical_arc| vertical_arc.moved(shift)),
-            arc_about_axis: part.arc_about_axis.map(|arc| arc.moved(shift)),
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

@@ -24,7 +24,7 @@ pub(crate) enum Neighbour {
 impl Neighbour {
     /// An end of a move of a tool that does not turn, or that stands along the dexels: a turn about its own axis moves no point out of its surface.
     pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
-        if part.vertical_arc.is_some() || part.arc_about_axis.is_some() {
+        if part.vertical_arc.is_some() {
             return Some(Self::Along(part.segment.velocity(end)[1]));
         }
         if !(part.segment.is_arc() && part.segment.turns().len() == 1 || stands(part)) {

@@ -3,9 +3,7 @@
 mod graph;
 mod heading;
 mod newton;
-mod oblique;
 mod parabola;
-pub(crate) mod quarters;
 pub(crate) mod ring;
 mod ring_about;
 pub(crate) mod slant;

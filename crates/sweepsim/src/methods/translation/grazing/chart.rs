@@ -24,10 +24,8 @@ pub(super) struct Chart {
     /// `R(I − R)⁻¹`, and the rounding error of a prediction times `(I − R)⁻¹`.
     spread: Square,
     variable_rounding: [f64; 2],
-    /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`, or the jump at an edge.
+    /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`.
     pub jump: i8,
-    /// −1 if the normals that are evaluated point inwards, as those of an edge may.
-    pub outwards: f64,
     /// Ranges of the derivatives of `q`.
     slopes: [Range; 2],
 }
@@ -218,7 +216,6 @@ impl Chart {
             spread,
             variable_rounding,
             jump: if inverted(&mid).1 > 0.0 { 1 } else { -1 },
-            outwards: 1.0,
             slopes: [0, 1].map(|j| (slopes[j].0 * half[j], slopes[j].1 * half[j])),
         })
     }

@@ -1,14 +1,11 @@
 //! The direction of a move, seen from the tool.
 
 use super::super::curves::SHORTEST;
-use super::super::rows::{Floor, Ground, Ring};
+use super::super::rows::Floor;
 use super::chart::Range;
-use super::polar::{Centre, Wedge};
 use super::tree::widened;
-use crate::algebra::ranges::{Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::time::circles::LevelArc;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -16,15 +13,7 @@ use sweepsim_motion::{Segment, turned_back};
 const FINENESS: f64 = 1_048_576.0;
 /// So no component of a direction is farther than this from the one that stands for it: rounded, and made a unit vector again.
 const SPREAD: f64 = 4.0 / FINENESS;
-/// The spread of a spin in units of that of directions over the radius. A spin is the length of the direction's horizontal part over the radius: members of a family differ from it by half the spread in each component, which makes
-/// `√½` of these units, and by half the spread of the radius, `½` of them; and like those, its spread is at least twice that.
-const SPREAD_OF_SPIN: f64 = 3.0;
-
-/// The direction of travel at the start of an arc, in the coordinates of a tool of revolution that stands along the dexels: how such a tool has turned about its own axis is arbitrary. Not
-/// along the seams of its patches, nor across them.
-const START: [f64; 2] = [0.761_245_135, 0.648_464_164];
-
-/// A move without rotation, or an arc with which the tool turns, in the direction in which its family goes: arcs turn left.
+/// A move without rotation, in the direction in which its family goes.
 #[derive(Clone, Debug)]
 pub(super) struct DirectedMotion {
     /// The height of the tip, and its rise.
@@ -32,7 +21,7 @@ pub(super) struct DirectedMotion {
     pub rise: f64,
     /// Of the way, in `q`.
     pub length: f64,
-    pub ground: Ground,
+    pub floor: Floor,
     /// Whether it is traversed backwards: then the time runs from 1 to 0.
     reversed: bool,
     pub system_rounding: f64,
@@ -52,14 +41,6 @@ pub(super) struct Directions {
     pub way: [f64; 3],
     /// No component of a direction that these stand for differs by more.
     pub spread: f64,
-    /// Whether the move goes the other way. A family is for both ways.
-    pub backwards: bool,
-    /// Of an arc.
-    pub centre: Option<Centre>,
-    /// The angular velocity about the dexels' direction, with the velocity of the tip as long as [`way`](Self::way) says: that of an arc with which a tool turns that is not of revolution.
-    pub spin: f64,
-    /// No spin that this one stands for differs by more.
-    pub spin_spread: f64,
 }
 
 /// What all directions of a family have in common.
@@ -68,8 +49,6 @@ pub(super) struct Key {
     turn: [u64; 9],
     ahead: [i32; 2],
     way: [i32; 3],
-    /// Of an arc.
-    radius: Option<u64>,
 }
 
 impl Directions {
@@ -79,91 +58,20 @@ impl Directions {
             rows: [seen([x, y, 0.0]), seen([-y, x, 0.0]), seen([0.0, 0.0, 1.0])],
             way: turned_back(turn, &way.into()).into(),
             spread,
-            backwards: false,
-            centre: None,
-            spin: 0.0,
-            spin_spread: 0.0,
         }
-    }
-
-    /// The same of an arc. `turns`: the tool, which is not of revolution.
-    fn around(self, centre: Centre, turns: bool) -> Self {
-        let [x, y, _] = self.way;
-        let (spin, spin_spread) = if turns {
-            (x.hypot(y) / centre.radius, SPREAD_OF_SPIN * self.spread / centre.radius)
-        } else {
-            (0.0, 0.0)
-        };
-        Self {
-            centre: Some(centre),
-            spin,
-            spin_spread,
-            ..self
-        }
-    }
-
-    /// The angular velocity and the velocity of the tip, in the tool's coordinates.
-    pub fn twist(&self) -> [[f64; 3]; 2] {
-        [self.rows[2].map(|x| x * self.spin), self.way]
-    }
-
-    /// The velocity of a point of the tool.
-    pub fn velocity(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        let [spin, way] = self.twist().map(Vector3::from);
-        way + spin.cross(point)
     }
 
     /// Whether these stand for others.
     fn are_near(&self, others: &Self) -> bool {
         let pairs = self.rows.iter().zip(&others.rows).chain([(&self.way, &others.way)]);
-        let radii = match (&self.centre, &others.centre) {
-            (Some(a), Some(b)) => (a.radius - b.radius).abs() <= 0.5 * a.spread,
-            (a, b) => a.is_none() && b.is_none(),
-        };
         let mut numbers = pairs.flat_map(|(a, b)| a.iter().zip(b));
-        let spins = (self.spin - others.spin).abs() <= 0.5 * self.spin_spread;
-        radii && spins && numbers.all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
+        numbers.all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
     }
 
-    /// A cell as it is seen from the centre of an arc, if its points may be off by so much.
-    pub fn wedge(&self, position: &Triples, off: f64) -> Option<Wedge> {
-        Some(self.centre.as_ref()?.wedge(&self.rows, position, off))
+    /// The ranges of the derivatives of `q` and `p` along one variable over a prepared cell, where those of its points may be off by so much.
+    pub fn slopes(&self, (element, cells, cell): (&PatchForms, &Cells, u32), (axis, off): (usize, f64)) -> [Range; 2] {
+        [0, 1].map(|k| widened(cells.slope_products(element, cell, axis, &[self.rows[k]]), off))
     }
-
-    /// The ranges of `q` and `p` over a cell with these control points, which may be off by so much, with the rounding error of coordinates.
-    pub fn ranges(&self, position: &Triples, off: f64, system_rounding: f64) -> [Range; 2] {
-        match (&self.centre, self.wedge(position, off)) {
-            (Some(centre), Some(wedge)) => [
-                wedge.q(system_rounding),
-                widened(wedge.p(centre.spread), system_rounding),
-            ],
-            _ => [0, 1].map(|k| widened(products(&[self.rows[k]], position), off + system_rounding)),
-        }
-    }
-
-    /// The ranges of the derivatives of `q` and `p` along one variable over a prepared cell, where those of its points may be off by so much; and by how much that of `p`
-    /// may differ over a family.
-    pub fn slopes(
-        &self,
-        (element, cells, cell): (&PatchForms, &Cells, u32),
-        wedge: Option<&Wedge>,
-        (axis, off): (usize, f64),
-    ) -> ([Range; 2], f64) {
-        let along = |row: &[f64; 3]| widened(cells.slope_products(element, cell, axis, &[*row]), off);
-        match wedge {
-            None => ([along(&self.rows[0]), along(&self.rows[1])], off),
-            Some(wedge) => {
-                let axes = wedge.axes.each_ref().map(along);
-                (wedge.slopes(axes), off + wedge.blur(axes))
-            }
-        }
-    }
-}
-
-/// A radius to 20 bits.
-fn rounded_radius(radius: f64) -> f64 {
-    const REST: u64 = (1 << 32) - 1;
-    f64::from_bits((radius.to_bits() + (1 << 31)) & !REST)
 }
 
 fn unit<const N: usize>(v: [f64; N]) -> [f64; N] {
@@ -205,64 +113,10 @@ impl DirectedMotion {
             from: from[2],
             rise: way[2],
             length,
-            ground: Ground::Floor(floor),
+            floor,
             reversed,
             system_rounding,
-            own: Directions {
-                backwards: reversed,
-                ..Directions::new(&turn, ahead, way.map(|x| x / size), 0.0)
-            },
-            turn,
-            ahead,
-            way,
-        })
-    }
-
-    /// An arc of a tool that stands along the dexels and turns with it, and the same as a segment. `None` if it is too short.
-    ///
-    /// In the frame that turns with the arc, the velocity of a tool of revolution is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point
-    /// out of its surface: `g` is that of the translation. Other tools keep that turn.
-    pub fn around(level_arc: &LevelArc, segment: &Segment, system_rounding: f64) -> Option<Self> {
-        let (radius, angle) = (level_arc.radius, level_arc.angle.abs());
-        let [first, last] = segment.tips();
-        let climb = segment.travel()[2];
-        if !(level_arc.length() > SHORTEST * system_rounding && level_arc.length().hypot(climb).is_finite()) {
-            return None;
-        }
-        let reversed = level_arc.angle < 0.0;
-        let (from, rise, out) = if reversed {
-            (last[2], -climb, level_arc.out(1.0))
-        } else {
-            (first[2], climb, level_arc.from)
-        };
-        let ahead = unit(match level_arc.tool_x {
-            None => START,
-            // The tangent to the left, as seen along the tool's x and y: the same at both ends.
-            Some([x, y]) => {
-                let [a, b] = level_arc.from;
-                [a * y - b * x, a * x + b * y]
-            }
-        });
-        let (turn, centre) = (Matrix3::identity(), Centre { radius, spread: 0.0 });
-        let way = [ahead[0] * radius * angle, ahead[1] * radius * angle, rise];
-        let ring = Ring {
-            centre: level_arc.centre,
-            radius,
-            from: out,
-            rounding: system_rounding,
-        };
-        let own = Directions::new(&turn, ahead, unit(way), 0.0).around(centre, level_arc.tool_x.is_some());
-        Some(Self {
-            from,
-            rise,
-            length: angle,
-            ground: Ground::Ring(ring),
-            reversed,
-            system_rounding,
-            own: Directions {
-                backwards: reversed,
-                ..own
-            },
+            own: Directions::new(&turn, ahead, way.map(|x| x / size), 0.0),
             turn,
             ahead,
             way,
@@ -277,21 +131,12 @@ impl DirectedMotion {
         for (bits, x) in bits.iter_mut().zip(self.turn.iter()) {
             *bits = x.to_bits();
         }
-        let centre = self.own.centre.map(|centre| {
-            let radius = rounded_radius(centre.radius);
-            let spread = SPREAD * radius;
-            Centre { radius, spread }
-        });
         let key = Key {
             turn: bits,
             ahead: ahead.map(|x| x as i32),
             way: way.map(|x| x as i32),
-            radius: centre.map(|centre| centre.radius.to_bits()),
         };
-        let mut directions = Directions::new(&self.turn, unit(ahead), unit(way), SPREAD);
-        if let Some(centre) = centre {
-            directions = directions.around(centre, self.own.spin > 0.0);
-        }
+        let directions = Directions::new(&self.turn, unit(ahead), unit(way), SPREAD);
         directions.are_near(&self.own).then_some((key, directions))
     }
 

@@ -1,25 +1,18 @@
 //! A patch, seen in the coordinates of a move.
 
 use super::directed_motion::Directions;
-use super::polar::Centre;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
-
-/// A patch or an edge of which a move sweeps a curve: the points at which `g` is 0.
-pub(super) trait Curve {
-    fn at(&self, at: [f64; 2]) -> Sight;
-}
 
 /// A patch as it is seen along a direction.
 pub(super) struct Face<'a> {
     element: &'a PatchForms,
     placing: Placing,
     way: Twisted,
-    centre: Option<Centre>,
 }
 
-/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip, or [about a centre](super::polar).
+/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight {
     pub place: [f64; 3],
@@ -33,19 +26,15 @@ impl<'a> Face<'a> {
     pub fn new(element: &'a PatchForms, directions: &Directions) -> Self {
         let [q, p, z] = directions.rows.map(|row| Vector3::from(row).transpose());
         let frame = element.frame();
-        let [spin, way] = directions.twist().map(Vector3::from);
         Self {
             element,
             placing: Placing::new(&Matrix3::from_rows(&[q, p, z]), &Vector3::zeros(), frame),
-            way: Twisted::new(&spin, &way, frame),
-            centre: directions.centre,
+            way: Twisted::new(&Vector3::zeros(), &directions.way.into(), frame),
         }
     }
-}
 
-impl Curve for Face<'_> {
     #[inline]
-    fn at(&self, at: [f64; 2]) -> Sight {
+    pub fn at(&self, at: [f64; 2]) -> Sight {
         let (point, g) = match &self.element.revolution {
             Some(revolution) => {
                 let turned = revolution.at(&self.placing, at);
@@ -57,15 +46,11 @@ impl Curve for Face<'_> {
             }
         };
         let three = |[q, p, z, _]: [f64; 4]| [q, p, z];
-        let sight = Sight {
+        Sight {
             place: three(point.place),
             slopes: point.slopes.map(three),
             g,
             normal: three(point.normal),
-        };
-        match &self.centre {
-            Some(centre) => centre.seen(&sight),
-            None => sight,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::super::Collector;
 use super::chart::{Chart, Region, Witness};
 use super::directed_motion::DirectedMotion;
-use super::face::{Curve, Sight};
+use super::face::{Face, Sight};
 use super::knot::{Knot, KnownLine, Quintic};
 use super::span::{Graph, Known, Span, Spans, is_absent};
 use sweepsim_dexel::Source;
@@ -26,8 +26,8 @@ pub(super) struct Target {
 }
 
 /// The search of lines over charts.
-pub(super) struct Lines<'a, 'b, S, C> {
-    pub curve: &'a C,
+pub(super) struct Lines<'a, 'b, S> {
+    pub face: &'a Face<'a>,
     pub motion: &'a DirectedMotion,
     pub collector: &'a mut Collector<'b>,
     pub source: &'a S,
@@ -36,14 +36,12 @@ pub(super) struct Lines<'a, 'b, S, C> {
     /// The longest last step of Newton's method, in parts of the patch.
     pub last: f64,
     pub evaluations: u64,
-    /// Angles of the present chart are within half a turn of this one.
-    pub middle: f64,
     pub targets: Vec<Target>,
 }
 
 /// The lines of one chart.
-pub(super) struct Over<'a, 'b, 'c, S, C> {
-    pub lines: &'c mut Lines<'a, 'b, S, C>,
+pub(super) struct Over<'a, 'b, 'c, S> {
+    pub lines: &'c mut Lines<'a, 'b, S>,
     /// Those that are solved one by one, in the order of `p`.
     targets: Vec<Target>,
     pub chart: &'c Chart,
@@ -52,7 +50,7 @@ pub(super) struct Over<'a, 'b, 'c, S, C> {
     pub accept: [f64; 2],
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
     /// The ranges of `p` and `q` of the lines that a cell may meet on its way.
     pub fn reach(&self, [p, q]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
         [[p.0, p.1], [q.0, q.1 + self.motion.length]]
@@ -62,28 +60,24 @@ impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
     pub fn leave(&mut self, window: [[f64; 2]; 2]) {
         let lines = self.collector.lines;
         self.motion
-            .ground
+            .floor
             .each(lines, window, |line, _| self.collector.open(line));
     }
 
     /// A point of a chart.
     pub fn sight(&mut self, chart: &Chart, at: [f64; 2]) -> (Sight, Witness) {
-        let mut sight = self.curve.at(chart.point(at));
+        let sight = self.face.at(chart.point(at));
         self.evaluations += 1;
-        let q = self.motion.ground.near(sight.place[0], self.middle);
-        sight.place[0] = q;
         let witness = Witness {
             at,
             value: [sight.place[1], sight.g[0]],
-            q,
+            q: sight.place[0],
         };
         (sight, witness)
     }
 
     /// The lines over a chart.
     pub fn chart(&mut self, chart: &Chart, window: [[f64; 2]; 2]) {
-        let [_, [q_low, q_high]] = window;
-        self.middle = 0.5 * (q_low + q_high - self.motion.length);
         let (_, centre) = self.sight(chart, [0.0; 2]);
         let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
         // As in `charts/`: `R` bounds how much the derivatives change over the chart.
@@ -107,19 +101,19 @@ pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
     !(q - lo < 0.0 || q - hi > length)
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     /// The lines of a window.
     fn window(&mut self, mut window: [[f64; 2]; 2]) {
-        let (lines, ground) = (self.lines.collector.lines, &self.lines.motion.ground);
+        let (lines, floor) = (self.lines.collector.lines, &self.lines.motion.floor);
         self.targets.clear();
         let mut spans = None;
-        if ground.are_many(lines, window, MANY) {
+        if floor.are_many(lines, window, MANY) {
             let found = Spans::new(self.spans(window));
             let Some(reach) = found.reach() else { return };
             window[0] = reach;
             spans = Some(found);
         }
-        ground.each(lines, window, |line, [p, q]| {
+        floor.each(lines, window, |line, [p, q]| {
             let line = line as u32;
             let target = Target { p, q, line };
             let span = spans.as_mut().and_then(|spans| spans.find(target.p));
@@ -139,8 +133,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The curve over a window of many lines.
     fn spans(&mut self, [p, [q_low, q_high]]: [[f64; 2]; 2]) -> Vec<Span> {
         let lines = self.lines.collector.lines;
-        let across = (q_high - q_low) * self.lines.motion.ground.scale(0.5 * (p[0] + p[1]));
-        let density = lines.scale(0).1 * lines.scale(1).1 * across;
+        let density = lines.scale(0).1 * lines.scale(1).1 * (q_high - q_low);
         let least = f64::max(FEW as f64 / density, (p[1] - p[0]) / SPANS);
         let mut spans = Vec::new();
         self.divide(p, [&KnownLine::default(); 2], None, least, &mut spans);
@@ -201,7 +194,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (knot, range) = graph.near(p);
         if let Some((lo, hi)) = range {
-            let (length, margin) = (self.lines.motion.length, self.lines.motion.ground.error(p));
+            let (length, margin) = (self.lines.motion.length, self.lines.motion.floor.error());
             if q - lo < -margin || q - hi > length + margin {
                 return true;
             }
@@ -270,8 +263,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         let [[q, _], [z, _]] = larger.at(found.p);
         let motion = self.lines.motion;
         let steepness = motion.rise.abs() / motion.length;
-        let scale = motion.ground.scale(found.p);
-        let off = (z - found.place[1]).abs() + (scale + steepness) * (q - found.place[0]).abs();
+        let off = (z - found.place[1]).abs() + (1.0 + steepness) * (q - found.place[0]).abs();
         off <= LESS * self.lines.height_tolerance
     }
 
@@ -283,7 +275,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         }
         let range = self.chart.q(&nearest.witness, &region);
         let motion = self.lines.motion;
-        let margin = motion.ground.error(p);
+        let margin = motion.floor.error();
         if !meets((range.0 - margin, range.1 + margin), q, motion.length) {
             return true;
         }
@@ -299,26 +291,21 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     fn follow(&mut self, curve: &Quintic, (p, q, line): (f64, f64, u32), outside: [f64; 3]) {
         let motion = self.lines.motion;
         let [[own, dq], [z, dz]] = curve.at(p);
-        let scale = motion.ground.scale(p);
         let [length, rise] = [motion.length, motion.rise];
         // Across the curve and the way.
-        let normal = [-rise, scale * (rise * dq - length * dz), scale * length];
+        let normal = [-rise, rise * dq - length * dz, length];
         let is_outwards = (0..3).map(|k| normal[k] * outside[k]).sum::<f64>() >= 0.0;
         let normal = if is_outwards { normal } else { normal.map(|x| -x) };
-        self.put((line, q), q - own, z, normal);
+        self.put(line, q - own, z, normal);
     }
 
-    pub fn put(&mut self, (line, q): (u32, f64), ahead: f64, z: f64, normal: [f64; 3]) {
+    pub fn put(&mut self, line: u32, ahead: f64, z: f64, normal: [f64; 3]) {
         let motion = self.lines.motion;
         let share = (ahead / motion.length).clamp(0.0, 1.0);
         let z = motion.from + share * motion.rise + z;
-        let normal = motion.ground.in_space(q, normal);
+        let normal = motion.floor.in_space(normal);
         let size = normal.iter().map(|c| c * c).sum::<f64>();
-        let scale = if size > 0.0 {
-            self.chart.outwards / size.sqrt()
-        } else {
-            1.0
-        };
+        let scale = if size > 0.0 { size.sqrt().recip() } else { 1.0 };
         let normal = normal.map(|c| (c * scale) as f32);
         let source = (self.lines.source)(motion.time(share));
         let jump = self.chart.jump;

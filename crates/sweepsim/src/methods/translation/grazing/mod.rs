@@ -1,17 +1,14 @@
 //! Grazing curves of any patch: see `docs/algorithms/grazing-curves.md`.
 //!
-//! On moves without rotation, and on arcs about the dexels' direction of a tool that turns with them, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
-//! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it. Sharp edges are solved in the same way, with their own curve in the place of the grazing curve.
+//! On moves without rotation, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
+//! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it.
 
-mod at_rest;
 mod chart;
 mod directed_motion;
 mod face;
 mod knot;
 mod lines;
 mod newton;
-mod polar;
-mod rim;
 mod span;
 mod tree;
 mod walk;
@@ -19,16 +16,9 @@ mod walk;
 use super::{Ceiling, Collector};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, Size};
-use crate::methods::harvest::unit;
-use crate::time::circles::LevelArc;
-use at_rest::{Finds, Search, Still, TooMany};
 use directed_motion::{DirectedMotion, Directions, Key};
-use face::{Curve, Face};
+use face::Face;
 use lines::{Lines, Target};
-use nalgebra::{Matrix3, Vector3};
-use rim::Rim;
-use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
@@ -37,8 +27,6 @@ use walk::Walk;
 
 /// The number of families of directions that are kept.
 const FAMILIES: usize = 64;
-/// The number of orientations that are kept.
-const POSES: usize = 8;
 /// The number of cells of all of them.
 const CELLS: usize = 100_000;
 
@@ -47,35 +35,28 @@ const CELLS: usize = 100_000;
 pub(crate) struct Grazing {
     /// The latest one comes last.
     families: Vec<Family>,
-    /// The same for orientations at rest.
-    poses: Vec<(Matrix3<f64>, Vec<Option<Still>>)>,
     targets: Vec<Target>,
 }
 
-/// The cells of all patches and of all edges, for directions that are almost the same.
+/// The cells of all patches, for directions that are almost the same.
 #[derive(Debug)]
 struct Family {
     key: Key,
     directions: Directions,
-    trees: [Vec<Option<Tree>>; 2],
+    trees: Vec<Option<Tree>>,
 }
 
-/// The patches of a tool, or its edges.
-pub(crate) struct Elements<'a> {
+/// The patches of a tool.
+pub(crate) struct Patches<'a> {
     pub forms: &'a [PatchForms],
     pub cells: &'a mut [Cells],
     /// Which of them are settled.
     pub done: &'a mut [bool],
-    /// Those that are settled together or not at all, in ascending order: along an arc a tool of revolution is turned about its own axis as charts do not have it, and its
-    /// seams are elsewhere.
-    pub rings: &'a [Range<usize>],
 }
 
 /// A search of lines along one move.
 pub(crate) struct Grazed<'a, 'b> {
     pub segment: &'a Segment,
-    /// The same as an arc with which a tool of revolution turns.
-    pub level_arc: Option<&'a LevelArc>,
     pub collector: &'a mut Collector<'b>,
     pub ceiling: Option<&'a Ceiling>,
     /// The rounding error of coordinates.
@@ -91,31 +72,18 @@ impl Grazing {
     /// Forgets a patch: to be called when its cells are dropped.
     pub fn forget(&mut self, patch: usize) {
         for family in &mut self.families {
-            family.trees[0][patch] = None;
-        }
-        for (_, trees) in &mut self.poses {
-            trees[patch] = None;
-        }
-    }
-
-    /// Forgets an edge: to be called when its cells are dropped.
-    pub fn forget_edge(&mut self, edge: usize) {
-        for family in &mut self.families {
-            family.trees[1][edge] = None;
+            family.trees[patch] = None;
         }
     }
 
     /// The number of the family of a motion, which is the last one then.
-    fn family(&mut self, motion: &DirectedMotion, elements: [usize; 2]) -> Option<&mut Family> {
+    fn family(&mut self, motion: &DirectedMotion, patches: usize) -> Option<&mut Family> {
         let (key, directions) = motion.family()?;
         if let Some(known) = self.families.iter().position(|family| family.key == key) {
             let family = self.families.remove(known);
             self.families.push(family);
         } else {
-            let trees = self
-                .families
-                .iter()
-                .flat_map(|family| family.trees.iter().flatten().flatten());
+            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten());
             if trees.map(Tree::len).sum::<usize>() > CELLS {
                 self.families.clear();
             }
@@ -125,82 +93,54 @@ impl Grazing {
             self.families.push(Family {
                 key,
                 directions,
-                trees: elements.map(|count| vec![None; count]),
+                trees: vec![None; patches],
             });
         }
         self.families.last_mut()
     }
 
-    /// Settles the patches and the edges that are not done along a move without rotation or an arc with which the tool turns, as far as that is possible.
-    pub fn settle(&mut self, tool: [Elements; 2], grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
-        if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
+    /// Settles the patches that are not done along a move without rotation, as far as that is possible.
+    pub fn settle(&mut self, patches: Patches, grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
+        let Patches { forms, cells, done } = patches;
+        if done.iter().all(|done| *done) {
             return;
         }
-        let motion = match grazed.level_arc {
-            Some(level_arc) => DirectedMotion::around(level_arc, grazed.segment, grazed.system_rounding),
-            None => DirectedMotion::new(grazed.segment, grazed.system_rounding),
+        let Some(motion) = DirectedMotion::new(grazed.segment, grazed.system_rounding) else {
+            return;
         };
-        let Some(motion) = motion else { return };
         let mut targets = std::mem::take(&mut self.targets);
-        let counts = tool.each_ref().map(|elements| elements.forms.len());
-        let Some(family) = self.family(&motion, counts) else {
+        let Some(family) = self.family(&motion, forms.len()) else {
             return;
         };
         let mut trimmed = Vec::new();
-        for (kind, (elements, trees)) in tool.into_iter().zip(&mut family.trees).enumerate() {
-            let Elements {
-                forms,
-                cells,
-                done,
-                rings,
-            } = elements;
-            let (mut mark, mut next) = (grazed.collector.mark(), 0);
-            for number in 0..forms.len() {
-                if done[number] || number < next {
-                    continue;
-                }
-                let (element, cells, directions) = (&forms[number], &mut cells[number], &family.directions);
-                let ring = rings.iter().find(|ring| ring.contains(&number)).cloned();
-                let ring = ring.unwrap_or(number..number + 1);
-                if number == ring.start {
-                    mark = grazed.collector.mark();
-                }
-                let tree = trees[number]
-                    .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
-                let of = (element, &mut *cells);
-                done[number] = if element.is_edge() {
-                    let curve = &Rim::new(element, &motion.own);
-                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
-                } else {
-                    let curve = &Face::new(element, &motion.own);
-                    grazed.element(of, (curve, &motion), (tree, directions), source, &mut targets)
-                };
-                if !done[number] {
-                    grazed.collector.forget(mark);
-                    next = ring.end;
-                    done[ring].fill(false);
-                }
-                if cells.trim() {
-                    trimmed.push((kind, number));
-                }
+        for (number, (element, cells)) in forms.iter().zip(cells).enumerate() {
+            if done[number] {
+                continue;
+            }
+            let (mark, directions) = (grazed.collector.mark(), &family.directions);
+            let tree = family.trees[number]
+                .get_or_insert_with(|| Tree::new(element, cells, 0, directions, motion.system_rounding));
+            let face = &Face::new(element, &motion.own);
+            let of = (element, &mut *cells);
+            done[number] = grazed.element(of, (face, &motion), (tree, directions), source, &mut targets);
+            if !done[number] {
+                grazed.collector.forget(mark);
+            }
+            if cells.trim() {
+                trimmed.push(number);
             }
         }
         self.targets = targets;
-        for (kind, number) in trimmed {
-            match kind {
-                0 => self.forget(number),
-                _ => self.forget_edge(number),
-            }
-        }
+        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }
 
 impl Grazed<'_, '_> {
-    /// Settles one element, and returns whether that was possible; otherwise what was found is of no use.
+    /// Settles one patch, and returns whether that was possible; otherwise what was found is of no use.
     fn element(
         &mut self,
         (element, cells): (&PatchForms, &mut Cells),
-        (curve, motion): (&impl Curve, &DirectedMotion),
+        (face, motion): (&Face, &DirectedMotion),
         (tree, directions): (&mut Tree, &Directions),
         source: &impl Fn(f64) -> Source,
         targets: &mut Vec<Target>,
@@ -218,14 +158,13 @@ impl Grazed<'_, '_> {
             own_looks: 0,
             visits: 0,
             lines: Lines {
-                curve,
+                face,
                 motion,
                 collector: &mut *self.collector,
                 source,
                 height_tolerance: self.height_tolerance,
                 last: self.last,
                 evaluations: 0,
-                middle: 0.0,
                 targets: std::mem::take(targets),
             },
         };
@@ -237,96 +176,5 @@ impl Grazed<'_, '_> {
         statistics.boxes += looks;
         statistics.evaluations += evaluations;
         outcome.is_ok()
-    }
-}
-
-/// A search of the lines of a tool at rest.
-pub(crate) struct Resting<'a, 'b> {
-    pub pose: (Matrix3<f64>, Vector3<f64>),
-    /// The motions before and after.
-    pub sides: [JointSide; 2],
-    pub size: Size,
-    pub collector: &'a mut Collector<'b>,
-    /// The longest last step of Newton's method.
-    pub last: f64,
-    pub source: Source,
-    pub monitor: &'a dyn Monitor,
-}
-
-/// Puts crossings of a patch at rest.
-struct Rests<'a, 'b> {
-    collector: &'a mut Collector<'b>,
-    source: Source,
-}
-
-impl Finds for Rests<'_, '_> {
-    fn found(&mut self, line: usize, from: [f64; 2], at: [f64; 2], seen: &OnPlaced, orientation: i8) {
-        let negative = |side: Near<2>| i8::from(side.at(&at, &from) < 0.0);
-        let change = negative(seen.after) - negative(seen.before);
-        if change != 0 {
-            let z = seen.height.at(&at, &from);
-            let jump = -orientation * change;
-            self.collector.crossing(line, z, jump, unit(seen.normal), self.source);
-        }
-    }
-
-    fn open(&mut self, line: usize) {
-        self.collector.open(line);
-    }
-}
-
-impl Grazing {
-    /// Settles the patches that are not done at rest between two moves without rotation, as far as that is possible.
-    pub fn rest(&mut self, (elements, cells): (&[PatchForms], &mut [Cells]), resting: &mut Resting, done: &mut [bool]) {
-        let (turn, tip) = resting.pose;
-        if let Some(known) = self.poses.iter().position(|(other, _)| *other == turn) {
-            let pose = self.poses.remove(known);
-            self.poses.push(pose);
-        } else {
-            let trees = self.poses.iter().flat_map(|(_, trees)| trees.iter().flatten());
-            if trees.map(Still::len).sum::<usize>() > CELLS || self.poses.len() == POSES {
-                self.poses.clear();
-            }
-            self.poses.push((turn, vec![None; elements.len()]));
-        }
-        let Some((_, trees)) = self.poses.last_mut() else {
-            return;
-        };
-        let mut trimmed = Vec::new();
-        for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
-            if done[number] {
-                continue;
-            }
-            let lines = resting.collector.lines;
-            let mark = resting.collector.mark();
-            let mut search = Search {
-                map: &mut PlacedMap::new(element, &mut *cells, resting.pose, resting.sides, resting.size),
-                lines,
-                tip: [tip.x, tip.y],
-                last: resting.last,
-                monitor: resting.monitor,
-                looks: 0,
-                evaluations: 0,
-            };
-            let mut rests = Rests {
-                collector: &mut *resting.collector,
-                source: resting.source,
-            };
-            let outcome = trees[number]
-                .get_or_insert_with(Still::new)
-                .walk(&mut search, &mut rests);
-            let Search { looks, evaluations, .. } = search;
-            let statistics = &mut resting.collector.harvest.statistics;
-            statistics.boxes += looks;
-            statistics.evaluations += evaluations;
-            match outcome {
-                Ok(()) => done[number] = true,
-                Err(TooMany) => resting.collector.forget(mark),
-            }
-            if cells.trim() {
-                trimmed.push(number);
-            }
-        }
-        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }

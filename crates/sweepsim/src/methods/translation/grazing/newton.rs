@@ -1,7 +1,6 @@
 //! One point of a grazing curve by Newton's method, and what it decides.
 
 use super::chart::{Region, Witness, solved};
-use super::face::Curve;
 use super::knot::{Knot, KnownLine};
 use super::lines::{Over, meets};
 use sweepsim_dexel::Source;
@@ -19,7 +18,7 @@ enum Verdict {
     Unsure,
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     /// The point of the curve, if it has one in the chart, and the line that is there. `latest`: where that was evaluated last.
     pub fn solve(
         &mut self,
@@ -43,7 +42,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
             [a, b] => a.or(b),
         };
-        let error = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.floor.error();
         if let (Some(knot), Some((q, _))) = (nearest, line) {
             let (lo, hi) = chart.q(&knot.witness, &within);
             // A knot is of use to other lines.
@@ -92,7 +91,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         });
                     }
                     if long <= ON_FACE {
-                        self.leave((p, line), &here, &within);
+                        self.leave(line, &here, &within);
                         return None;
                     }
                 }
@@ -119,7 +118,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         return None;
                     }
                 }
-                self.leave((p, line), &here, &within);
+                self.leave(line, &here, &within);
                 return None;
             }
             s = step.map_or_else(
@@ -128,15 +127,15 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             );
         }
         if let Some(latest) = latest {
-            self.leave((p, line), latest, &within);
+            self.leave(line, latest, &within);
         }
         None
     }
 
     /// Leaves a line open, unless no point of the region meets it on its way, as seen from a witness.
-    fn leave(&mut self, (p, line): (f64, Option<(f64, u32)>), witness: &Witness, within: &Region) {
+    fn leave(&mut self, line: Option<(f64, u32)>, witness: &Witness, within: &Region) {
         let Some((q, line)) = line else { return };
-        let error = self.lines.motion.ground.error(p);
+        let error = self.lines.motion.floor.error();
         let (lo, hi) = self.chart.q(witness, within);
         if meets((lo - error, hi + error), q, self.lines.motion.length) {
             self.lines.collector.open(line as usize);
@@ -163,7 +162,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
         let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
-        let error = self.chart.change(off) + self.lines.motion.ground.error(p);
+        let error = self.chart.change(off) + self.lines.motion.floor.error();
         let ahead = q - place[0];
         let length = self.lines.motion.length;
         if ahead < -error || ahead > length + error {
@@ -173,7 +172,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         if !(ahead > error && ahead < length - error) {
             return Verdict::Unsure;
         }
-        self.put((line, q), ahead, place[1], normal);
+        self.put(line, ahead, place[1], normal);
         Verdict::Settled
     }
 }

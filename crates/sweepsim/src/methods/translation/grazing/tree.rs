@@ -1,17 +1,16 @@
-//! The cells of a patch, or of an edge, along the grazing curves of a family of directions, divided as far as lines have asked for.
+//! The cells of a patch along the grazing curves of a family of directions, divided as far as lines have asked for.
 
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::directed_motion::Directions;
-use super::rim::{Look, look};
-use crate::algebra::ranges::{ROUNDING, Triples, envelope, products};
+use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{at_pole, pole};
 
 /// Cells with sides smaller than this are not divided.
-pub(super) const SMALLEST: f64 = 1e-14;
+const SMALLEST: f64 = 1e-14;
 /// Nor are those over which `p` changes by fewer roundings than this.
-pub(super) const FLAT: f64 = 8.0;
+const FLAT: f64 = 8.0;
 
 /// A cell, and where it is in the coordinates `(q, p, z)` from the tip.
 #[derive(Clone, Debug)]
@@ -93,11 +92,6 @@ fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|k| a[k].abs() * b[k]).sum()
 }
 
-/// The same of moments and normals, for the angular velocity and the direction of the way.
-fn both(twist: &[[f64; 3]; 2], sizes: &[[f64; 3]; 2]) -> f64 {
-    total(&twist[0], &sizes[0]) + total(&twist[1], &sizes[1])
-}
-
 pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
     (lo - by, hi + by)
 }
@@ -109,56 +103,40 @@ impl Blur {
         }
         cells.prepare(element, cell);
         let one = [directions.spread; 3];
-        // Of the angular velocity, and of the direction of the way.
-        let twist = [directions.rows[2].map(|x| x * directions.spin_spread), one];
         let missing = cells.missing(cell);
-        if element.is_edge() {
-            return Self {
-                place: total(&one, &sizes(&cells.position(element, cell))),
-                slopes: [total(&one, &sizes(&cells.slope(element, cell, 0))), 0.0],
-                g: both(&twist, &element.largest),
-                g_slopes: [0.0; 2],
-            };
-        }
         Self {
             place: total(&one, &sizes(&cells.position(element, cell))),
             slopes: [0, 1].map(|axis| {
                 total(&one, &sizes(&cells.slope(element, cell, axis))) + total(&one, &missing.tangents[axis])
             }),
-            g: both(&twist, &element.largest),
+            g: total(&one, &element.largest[1]),
             g_slopes: [0, 1].map(|axis| {
-                let [normals, moments] = cells.field_slope(cell, 0, axis);
-                both(&twist, &[sizes(&moments), sizes(&normals)]) + both(&twist, &missing.slopes[axis])
+                let [normals, _] = cells.field_slope(cell, 0, axis);
+                total(&one, &sizes(&normals)) + total(&one, &missing.slopes[axis][1])
             }),
         }
     }
 }
 
 /// The bound of the rounding error of `g` on a cell of a patch.
-pub(super) fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
+fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
     let rounding = element.rounding_in([u.0, v.0], [u.1, v.1]);
-    ROUNDING * both(&directions.twist(), rounding)
+    ROUNDING * total(&directions.way, &rounding[1])
 }
 
-/// The range of `⟨way, N⟩ + ⟨spin, M⟩` over all coefficients of `N` and `M`, and what these lack.
-fn envelope_of(fields: &[Triples; 2], missing: &[[f64; 3]; 2], directions: &Directions) -> Range {
-    let twist = directions.twist();
-    let range = if directions.spin == 0.0 {
-        products(&[directions.way], &fields[0])
-    } else {
-        envelope(&[twist[0]], &[twist[1]], fields)
-    };
-    widened(range, both(&twist, missing))
+/// The range of `⟨way, N⟩` over all coefficients of `N`, and what these lack.
+fn envelope_of([normals, _]: &[Triples; 2], [_, missing]: &[[f64; 3]; 2], directions: &Directions) -> Range {
+    widened(products(&[directions.way], normals), total(&directions.way, missing))
 }
 
-/// The range of `g` on a cell, but for rounding; of an edge, on one of its two sides.
-pub(super) fn g(element: &PatchForms, cells: &Cells, cell: u32, side: usize, directions: &Directions) -> Range {
-    let fields = cells.field(element, cell, side);
+/// The range of `g` on a cell, but for rounding.
+fn g(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions) -> Range {
+    let fields = cells.field(element, cell, 0);
     envelope_of(&fields, &cells.missing(cell).value, directions)
 }
 
 /// The ranges of its derivatives on a prepared cell, for all directions that differ by so much.
-pub(super) fn slopes_of_g(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
+fn slopes_of_g(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
     [0, 1].map(|axis| {
         let fields = cells.field_slope(cell, 0, axis);
         let range = envelope_of(&fields, &cells.missing(cell).slopes[axis], directions);
@@ -210,7 +188,8 @@ impl Tree {
         system_rounding: f64,
     ) {
         let position = cells.position(element, cell);
-        let [q, p] = directions.ranges(&position, self.blur.place, system_rounding);
+        let off = self.blur.place + system_rounding;
+        let [q, p] = [0, 1].map(|k| widened(products(&[directions.rows[k]], &position), off));
         let (lowest, _) = products(&[directions.rows[2]], &position);
         let node = Node {
             cell,
@@ -254,16 +233,7 @@ impl Tree {
         system_rounding: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
-        if element.is_edge() {
-            return match look((element, &mut *cells, cell), p, directions, &self.blur, system_rounding) {
-                Look::Empty => State::Empty,
-                Look::Chart(chart) => self.chart(*chart),
-                Look::Mixed => State::Mixed,
-                Look::Least => State::Least,
-                Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, system_rounding),
-            };
-        }
-        let (lo, hi) = g(element, cells, cell, 0, directions);
+        let (lo, hi) = g(element, cells, cell, directions);
         let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (error, blur_of_g) = (error(element, bounds, directions), self.blur.g);
         let within = error + blur_of_g;
@@ -281,21 +251,19 @@ impl Tree {
             g_slopes,
             ..
         } = &self.blur;
-        let wedge = directions.wedge(&cells.position(element, cell), self.blur.place);
-        let of_place =
-            [0, 1].map(|axis| directions.slopes((element, cells, cell), wedge.as_ref(), (axis, place_slopes[axis])));
-        let [([q_u, p_u], in_u), ([q_v, p_v], in_v)] = of_place;
+        let of_place = [0, 1].map(|axis| directions.slopes((element, cells, cell), (axis, place_slopes[axis])));
+        let [[q_u, p_u], [q_v, p_v]] = of_place;
         let of_g = slopes_of_g(cells, cell, directions, g_slopes);
         let jacobian = [[p_u, p_v], of_g];
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
-        let blur = [[in_u, in_v], *g_slopes];
+        let blur = [*place_slopes, *g_slopes];
         let rough = match Chart::new([lower, upper], &jacobian, &blur, [system_rounding, error], [q_u, q_v]) {
             Ok(chart) => return self.chart(chart),
             Err(rough) => rough,
         };
         let rest = at_pole(&element.poles, bounds, (widened((lo, hi), within), of_g), |[u, v]| {
             let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
-            let (lo, hi) = g(element, cells, part, 0, directions);
+            let (lo, hi) = g(element, cells, part, directions);
             let within = self::error(element, [u, v], directions) + blur_of_g;
             let found = (lo <= within && hi >= -within).then(|| {
                 cells.prepare(element, part);
@@ -314,8 +282,7 @@ impl Tree {
         }
         let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
         let small = sides.iter().all(|side| *side < SMALLEST);
-        let is_blurred = rough.blurred || wedge.is_some_and(|wedge| wedge.is_blurred);
-        if directions.spread > 0.0 && (is_blurred || small) {
+        if directions.spread > 0.0 && (rough.blurred || small) {
             return State::Mixed;
         }
         if small || p.1 - p.0 - 2.0 * system_rounding < FLAT * system_rounding {

@@ -1,8 +1,6 @@
-//! A walk through the cells of a patch or an edge along one move: those with lines on their way are looked at, and divided where no move has asked for that before.
+//! A walk through the cells of a patch along one move: those with lines on their way are looked at, and divided where no move has asked for that before.
 
-use super::at_rest::TooMany;
 use super::directed_motion::{DirectedMotion, Directions};
-use super::face::Curve;
 use super::lines::Lines;
 use super::tree::{Known, Tree};
 use crate::cutter::cells::Cells;
@@ -15,6 +13,9 @@ const MOST: u64 = 20_000;
 /// So is one that takes more looks at cells for its own direction alone, which no other move can use.
 const MOST_OWN: u64 = 400;
 
+/// There are too many cells.
+pub(super) struct TooMany;
+
 /// What comes next in a walk.
 enum Next {
     Visit(u32),
@@ -22,8 +23,8 @@ enum Next {
     Release(usize),
 }
 
-/// The walk through the cells of one patch, or of one edge.
-pub(super) struct Walk<'a, 'b, S, C> {
+/// The walk through the cells of one patch.
+pub(super) struct Walk<'a, 'b, S> {
     pub element: &'a PatchForms,
     pub cells: &'a mut Cells,
     pub motion: &'a DirectedMotion,
@@ -34,10 +35,10 @@ pub(super) struct Walk<'a, 'b, S, C> {
     /// Of these, those for the direction alone.
     pub own_looks: u64,
     pub visits: u64,
-    pub lines: Lines<'a, 'b, S, C>,
+    pub lines: Lines<'a, 'b, S>,
 }
 
-impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
+impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
     pub fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
         let system_rounding = self.motion.system_rounding;
         let mut stack = vec![Next::Visit(0)];
@@ -52,7 +53,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
             let node = tree.node(number);
             let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
             self.visits += 1;
-            if node.lowest > self.highest || !self.motion.ground.meets(self.lines.collector.lines, window) {
+            if node.lowest > self.highest || !self.motion.floor.meets(self.lines.collector.lines, window) {
                 continue;
             }
             if self.monitor.cancelled() {

@@ -39,14 +39,6 @@ impl Sector {
 
     /// Visits all lines in it, and a few others; `x` of a row is from the centre.
     pub fn rows(&self, lines: &Lattice, rounding: f64, mut visit: impl FnMut(Row)) {
-        self.search(lines, rounding, |row| {
-            visit(row);
-            false
-        });
-    }
-
-    /// Visits rows until `visit` returns true.
-    pub(super) fn search(&self, lines: &Lattice, rounding: f64, mut visit: impl FnMut(Row) -> bool) -> bool {
         let margin = 4.0 * rounding;
         let [inner, outer] = [(self.radii[0] - margin).max(0.0), self.radii[1] + margin];
         let whole = self.angles[1] - self.angles[0] > 0.99 * PI;
@@ -58,7 +50,7 @@ impl Sector {
             (wide(self.extent(0)), wide(self.extent(1)))
         };
         let Some([first, last]) = numbers(lines, 0, xs) else {
-            return false;
+            return;
         };
         let open = [-margin, f64::INFINITY];
         // To the left of the first direction, and to the right of the second.
@@ -79,18 +71,17 @@ impl Sector {
             }
             let mut put = |[low, high]: [f64; 2]| {
                 let ys = [low.max(range[0]), high.min(range[1])].map(|y| self.centre[1] + y);
-                numbers(lines, 1, ys).is_some_and(|j| visit(Row { i, j, x }))
+                if let Some(j) = numbers(lines, 1, ys) {
+                    visit(Row { i, j, x });
+                }
             };
             // Parts that share a line are one.
-            let done = if gap > 2.0 * lines.grid.spacing()[1] {
-                put([-half, -gap]) || put([gap, half])
+            if gap > 2.0 * lines.grid.spacing()[1] {
+                put([-half, -gap]);
+                put([gap, half]);
             } else {
-                put([-half, half])
-            };
-            if done {
-                return true;
+                put([-half, half]);
             }
         }
-        false
     }
 }
