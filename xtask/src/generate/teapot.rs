@@ -159,7 +159,10 @@ impl Body {
             })
             .collect();
         let ball = |points: &[Vector3<f64>]| {
-            let radius = points.iter().map(|point| (point - points[0]).norm()).fold(0.0, f64::max);
+            let radius = points
+                .iter()
+                .map(|point| (point - points[0]).norm())
+                .fold(0.0, f64::max);
             (points.to_vec(), radius)
         };
         Self(points.chunks(20).map(ball).collect())
@@ -174,7 +177,10 @@ impl Body {
             let off = from_tip.norm_squared() - height * height;
             (height > -distance && off < (RADIUS + distance).powi(2)).then_some(height)
         };
-        let near = self.0.iter().filter(|(points, radius)| inside(&points[0], *radius).is_some());
+        let near = self
+            .0
+            .iter()
+            .filter(|(points, radius)| inside(&points[0], *radius).is_some());
         near.flat_map(|(points, _)| points)
             .filter_map(|point| inside(point, 0.0))
             .fold(0.0, f64::max)

@@ -52,7 +52,10 @@ fn check(program: &str, side: usize, is_upper: bool, bound: f64) {
             _ if n >> k & 1 == 1 => high[k],
             _ => low[k],
         });
-        assert!(is_free(&run(at, program, Judging::default())), "{at:?} of {low:?} {high:?}");
+        assert!(
+            is_free(&run(at, program, Judging::default())),
+            "{at:?} of {low:?} {high:?}"
+        );
     }
     // Below, where it does not pass over the post.
     let mut beyond = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), low[2]];
