@@ -92,7 +92,7 @@ fn check(number: usize, path: &Path) -> TestCaseResult {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2 * cases()))]
+    #![proptest_config(ProptestConfig::with_cases(cases() / 4))]
 
     /// Wider and narrower than the tool, in both directions, full circles among them.
     #[test]
@@ -132,7 +132,7 @@ proptest! {
 const CIRCLES: [[f64; 2]; 6] = [[3.0, 0.0], [2.2, 0.0], [1.0, 0.0], [1.0, 1.0], [3.0, 3.0], [3.0, 10.0]];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2 * cases()))]
+    #![proptest_config(ProptestConfig::with_cases(cases() / 4))]
 
     /// Lines beside the place where a circle of the tool reaches farthest from the arc's axis or least far: an edge, or
     /// where a torus meets a flat bottom. The reference takes minutes where lines so close are in the plane of a flat

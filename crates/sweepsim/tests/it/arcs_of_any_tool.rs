@@ -100,7 +100,7 @@ fn arcs(rise: f64) -> impl Strategy<Value = Vec<Arc>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases() / 4, ..ProptestConfig::default() })]
 
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]

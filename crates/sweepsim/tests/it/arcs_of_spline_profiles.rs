@@ -107,7 +107,7 @@ fn tangent(start: [f64; 3], steps: &[(f64, f64, f64)]) -> Path {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases() / 4, ..ProptestConfig::default() })]
 
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]
