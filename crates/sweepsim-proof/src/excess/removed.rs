@@ -40,6 +40,8 @@ pub(super) struct Known {
     pub holder: Option<Holder>,
     /// Whether the middle was removed.
     pub is_removed: bool,
+    /// What holds the middle best, whatever else it holds.
+    pub nearest: Option<Holder>,
 }
 
 /// Of the stretches in whose boxes a patch is, so many are looked at, those in whose middles it is.
@@ -52,6 +54,8 @@ const AXIS: f64 = 0.05;
 const STEPS: usize = 12;
 /// Times at which a motion that turns or bends is looked at first.
 const TIMES: usize = 4;
+/// A parabola is looked at again in so much shorter a time.
+const FINER: f64 = 0.125;
 /// Parts of time into which a stretch is divided to tell that a point was missed.
 const MOST_PARTS: usize = 500;
 
@@ -135,6 +139,7 @@ impl Removed<'_> {
                 held: points.iter().map(|_| true).collect(),
                 holder: Some(holder),
                 is_removed: true,
+                nearest: None,
             };
         }
         let mut all = Vec::new();
@@ -151,22 +156,23 @@ impl Removed<'_> {
             held: points.iter().map(|_| false).collect(),
             holder: None,
             is_removed: all.iter().any(|own| own.level <= -self.margin),
+            nearest: None,
         };
         for (number, candidate) in all.iter().enumerate() {
             let (held, time) = self.held_by(points, (candidate.level_of, candidate.stretch, candidate.time));
             let is_whole = !held.contains(&false);
+            let [course, solid, stretch] = candidate.numbers;
+            let holder = Some(Holder {
+                course,
+                solid,
+                stretch,
+                time,
+            });
             if number == 0 || is_whole {
-                known.held = held;
+                (known.held, known.nearest) = (held, holder);
             }
             if is_whole {
-                let [course, solid, stretch] = candidate.numbers;
-                known.holder = Some(Holder {
-                    course,
-                    solid,
-                    stretch,
-                    time,
-                });
-                known.is_removed = true;
+                (known.holder, known.is_removed) = (holder, true);
             }
             if is_whole || !known.held.contains(&true) {
                 break;
@@ -177,8 +183,7 @@ impl Removed<'_> {
 
     /// Whether what held other points holds these.
     fn held_again(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, mut recent: Holder) -> Option<Holder> {
-        let course = &self.courses[recent.course];
-        let (level, stretch) = (&course.solids[recent.solid].level, &course.stretches[recent.stretch]);
+        let (level, stretch) = self.of(recent);
         if stretch.is_straight() {
             let mut own = points.iter();
             return own
@@ -204,6 +209,30 @@ impl Removed<'_> {
             let held = own.map(|point| level_at(level, &at, point) <= -self.margin);
             (held.collect(), Some(time.min(1.0)))
         }
+    }
+
+    /// Whether something holds a point at some time.
+    pub fn holds(&self, holder: Holder, point: &Vector3<f64>) -> bool {
+        let (level, stretch) = self.of(holder);
+        match stretch.is_straight() {
+            true => is_inside(level, stretch, point, self.margin),
+            false => quick(level, stretch, point).0 <= -self.margin,
+        }
+    }
+
+    /// How far apart the places are from which it holds two points best, if that matters: if it is not straight.
+    pub fn apart(&self, holder: Holder, ends: [&Vector3<f64>; 2]) -> f64 {
+        let (level, stretch) = self.of(holder);
+        if stretch.is_straight() {
+            return 0.0;
+        }
+        let [a, b] = ends.map(|point| stretch.tip(quick(level, stretch, point).1));
+        (a - b).norm()
+    }
+
+    fn of(&self, holder: Holder) -> (&Level, &Stretch) {
+        let course = &self.courses[holder.course];
+        (&course.solids[holder.solid].level, &course.stretches[holder.stretch])
     }
 
     /// Whether a point was certainly not removed.
@@ -238,6 +267,9 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
             0.5
         });
     }
+    if stretch.is_level() {
+        return of(nearest_axis(stretch, point));
+    }
     // Where many are as deep, that with the axis nearest.
     let order = |time: f64| {
         let at = stretch.at(time);
@@ -255,6 +287,35 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
         [(near - step).max(0.0), (near + step).min(1.0)],
         STEPS / 2,
     ))
+}
+
+/// About when the axis of a tool that moves across it is nearest to a point: by parabolas.
+fn nearest_axis(stretch: &Stretch, point: &Vector3<f64>) -> f64 {
+    let axis = stretch.ends[0].axis;
+    let of = |time: f64| {
+        let off = point - stretch.tip(time);
+        off.norm_squared() - off.dot(&axis).powi(2)
+    };
+    let step = 1.0 / TIMES as f64;
+    let values: [f64; TIMES + 1] = std::array::from_fn(|k| of(k as f64 * step));
+    let near = (0..=TIMES)
+        .min_by(|a, b| values[*a].total_cmp(&values[*b]))
+        .unwrap_or(0);
+    // The least of a parabola through three values, around the middle one.
+    let least = |[a, b, c]: [f64; 3]| {
+        let bend = a - 2.0 * b + c;
+        if bend > 0.0 {
+            (0.5 * (a - c) / bend).clamp(-1.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let middle = near.clamp(1, TIMES - 1);
+    let first = (middle as f64 + least([values[middle - 1], values[middle], values[middle + 1]])) * step;
+    let finer = FINER * step;
+    let first = first.clamp(finer, 1.0 - finer);
+    let second = first + finer * least([first - finer, first, first + finer].map(of));
+    second.clamp(0.0, 1.0)
 }
 
 /// About where a function is least that falls, and then rises.
