@@ -174,7 +174,8 @@ impl Above<'_> {
             return;
         }
         // A point above all planes, within the surroundings.
-        let Some(off) = shortest(&normals, &own[..normals.len()]).filter(|off| off.amax() <= half) else {
+        let Some(off) = shortest(&normals, &own[..normals.len()]).filter(|off| off.amax() <= half + self.cell.lift)
+        else {
             return;
         };
         if is_outside(&(self.cell.centre + off), self.cell.pieces(), self.triangles) == Some(true) {

@@ -31,7 +31,7 @@ struct Known {
     /// The corners of the pieces, each once.
     corners: Vec<Vector3<f64>>,
     ways: Vec<Way>,
-    /// The normals of all triangles, if they are few.
+    /// The normals of all triangles, if they are few and some of the surface is in front of others.
     faces: Vec<Normal>,
     /// Whether all triangles look about the same way.
     is_smooth: bool,
@@ -56,6 +56,8 @@ pub(crate) struct Cell {
 pub(crate) const MOST_PIECES: usize = 256;
 /// As many directions are tried.
 pub(crate) const MOST_WAYS: usize = 8;
+/// A hollow is deeper than this part of what may have to be lifted.
+const HOLLOW: f64 = 0.02;
 /// Nothing is lifted above more planes together.
 pub(crate) const MOST_PLANES: usize = 8;
 /// Normals whose cosine is larger count as one direction.
@@ -189,7 +191,7 @@ impl Cell {
         &self.known(triangles).ways
     }
 
-    /// The normals of all triangles near it, those of about the same way once; none if they are many.
+    /// The normals of all triangles near it, those of about the same way once; none if they are many, or no hollow.
     pub fn faces(&self, triangles: &[Triangle]) -> &[Normal] {
         &self.known(triangles).faces
     }
@@ -214,7 +216,10 @@ impl Cell {
             let bits = |p: &Vector3<f64>| [p.x, p.y, p.z].map(f64::to_bits);
             corners.sort_unstable_by_key(bits);
             corners.dedup_by_key(|p| bits(p));
-            let (normals, faces, is_smooth) = self.normals(triangles);
+            let (normals, mut faces, is_smooth) = self.normals(triangles);
+            if !self.is_hollow(&faces, triangles, &corners) {
+                faces.clear();
+            }
             let mut known = Known {
                 corners,
                 ways: Vec::new(),
@@ -264,6 +269,16 @@ impl Cell {
         let own = clusters.iter().map(|(normal, _)| *normal);
         let mean = mean.and_then(|mean| Normal::near(&mean));
         (mean.into_iter().chain(own).collect(), faces, is_smooth)
+    }
+
+    /// Whether some of the surface is in front of the plane of other of it, by more than does not matter.
+    fn is_hollow(&self, faces: &[Normal], triangles: &[Triangle], corners: &[Vector3<f64>]) -> bool {
+        faces.iter().any(|face| {
+            let is_own = |piece: &&Piece| face.written == Normal::of(&triangles[piece.triangle as usize]).written;
+            let level = |own: &Piece| face.vector.dot(&own.corners[0]) + HOLLOW * self.wanted;
+            let own = self.pieces().iter().find(is_own).map(level);
+            own.is_some_and(|level| highest(corners, &face.vector).0 > level)
+        })
     }
 
     /// What is known of a direction.
