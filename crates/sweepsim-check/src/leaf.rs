@@ -8,11 +8,11 @@
 //! - **Clear**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
 //! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and
 //!   `√3 h`.
-//! - **Lifted** by normals `nᵢ`, at most [`MOST_PLANES`]: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`,
-//!   and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What
-//!   is above all planes in `H′` is convex and without surface: one place of it is outside of `T`, so all of it
-//!   is. If `|w| ≤ l`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
-//!   multiple of it.
+//! - **Lifted** by at most [`MOST_PLANES`] normals `nᵢ`: every piece of the surface in `H′` is below one of the
+//!   planes `⟨nᵢ, x⟩ = eᵢ`, and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes
+//!   for `x ∈ B ∩ H`. What is above all planes in `H′` is convex and without surface: one place of it is outside of
+//!   `T`, so all of it is. If `|w| ≤ l`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal,
+//!   `w` is a multiple of it.
 //! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`,
 //!   as far as that is at most `l`; the smaller of both is at most their mean.
 //!
