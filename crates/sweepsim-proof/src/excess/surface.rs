@@ -212,8 +212,8 @@ impl Patch {
         (middle, mean.try_normalize(1e-3).unwrap_or(self.normals[0]))
     }
 
-    /// Two parts of it, or nothing if it is as small as it should be. Between corners of which one is free and the other
-    /// is not, it is parted where that ends; else where a cutter would have to be at places that are far apart.
+    /// Two parts of it, or nothing if it is as small as it should be. Between corners of which one is free and the
+    /// other is not, it is parted where that ends; else where a cutter would have to be at places that are far apart.
     pub fn halves(&self, d: f64, least: f64, around: Option<Around>) -> Option<(Halved, [Self; 2])> {
         let longest = |vectors: &Vectors| {
             let mut best = (0.0, 0, 0);

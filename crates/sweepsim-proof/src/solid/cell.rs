@@ -239,8 +239,8 @@ impl Cell {
         })
     }
 
-    /// The mean normal and those of the triangles, as far as they differ; the latter alone if these are all; and whether
-    /// all are nearly the same.
+    /// The mean normal and those of the triangles, as far as they differ; the latter alone if these are all; and
+    /// whether all are nearly the same.
     fn normals(&self, triangles: &[Triangle]) -> (Vec<Normal>, Vec<Normal>, bool) {
         let pieces = self.pieces();
         let mut clusters: Vec<(Normal, f64)> = Vec::new();
