@@ -21,6 +21,9 @@ const CLIP: f64 = 1.0 + 9e-4;
 /// Cells with more triangles near them keep the numbers of these only.
 const MOST_PIECES: usize = 256;
 
+/// Nothing is lifted above more planes together.
+pub(crate) const MOST_PLANES: usize = 8;
+
 /// What is near a cell.
 enum Near {
     /// The corners of polygons, and where each polygon ends.
@@ -191,14 +194,14 @@ impl Cell {
     }
 
     /// For each piece of the surface in the surroundings, how far it reaches along each normal.
-    pub fn tops_up<'a>(&'a self, normals: &'a [V3]) -> Option<impl Iterator<Item = [f64; 3]> + 'a> {
+    pub fn tops_up<'a>(&'a self, normals: &'a [V3]) -> Option<impl Iterator<Item = [f64; MOST_PLANES]> + 'a> {
         let Near::Pieces { corners, ends } = &self.near else {
             return None;
         };
         let starts = std::iter::once(0).chain(ends.iter().copied());
         Some(starts.zip(ends).map(move |(from, to)| {
             let own = &corners[from as usize..*to as usize];
-            let mut tops = [f64::NEG_INFINITY; 3];
+            let mut tops = [f64::NEG_INFINITY; MOST_PLANES];
             for (top, n) in tops.iter_mut().zip(normals) {
                 *top = self.top_of(own, n);
             }

@@ -62,7 +62,8 @@ impl Left<'_> {
             // Of corners, then of normals: 0 and 1, 0 and 2, 1 and 2.
             10..16 => {
                 let pair = [[0, 1], [0, 2], [1, 2]][usize::from(kind - 10) % 3];
-                patch.halves(kind >= 13, pair)?.to_vec()
+                let part = if kind < 13 { Some(reader.float()?) } else { None };
+                patch.halves(part, pair)?.to_vec()
             }
             16 => patch.threes(),
             _ => {

@@ -8,11 +8,11 @@
 //! - **Clear**: no surface is in `H′`, and its centre is outside of `T`: so is all of it.
 //! - **Middle**: a ball about the middle of `H` reaches out of `T`: depths in `H` are at most its radius and
 //!   `√3 h`.
-//! - **Lifted** by normals `nᵢ`: every piece of the surface in `H′` is below one of the planes `⟨nᵢ, x⟩ = eᵢ`,
-//!   and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes for `x ∈ B ∩ H`. What
-//!   is above all planes in `H′` is convex and without surface: one place of it is outside of `T`, so all of it
-//!   is. If `|w| ≤ l`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal, `w` is a
-//!   multiple of it.
+//! - **Lifted** by at most [`MOST_PLANES`] normals `nᵢ`: every piece of the surface in `H′` is below one of the
+//!   planes `⟨nᵢ, x⟩ = eᵢ`, and `w` has `⟨nᵢ, w⟩ ≥ eᵢ + r(−nᵢ)`, so that `x + w` is not below any of the planes
+//!   for `x ∈ B ∩ H`. What is above all planes in `H′` is convex and without surface: one place of it is outside of
+//!   `T`, so all of it is. If `|w| ≤ l`, then `x + w` is in `H′`, and `x` is no deeper than `|w|`. With one normal,
+//!   `w` is a multiple of it.
 //! - **Slab** of two normals, each with such a place: a point is no deeper than `eᵢ − ⟨nᵢ, x⟩` for either `i`,
 //!   as far as that is at most `l`; the smaller of both is at most their mean.
 //!
@@ -25,7 +25,7 @@
 //!
 //! All times and all of the surface are in leaves; so a connected solid that is outside once, is always outside.
 
-use crate::cell::Cell;
+use crate::cell::{Cell, MOST_PLANES};
 use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
@@ -74,8 +74,8 @@ impl Near<'_> {
                 (apart < 0.0).then_some(if self.apart { apart } else { f64::NEG_INFINITY })
             }
             (6, [n]) => self.lifted(n),
-            (7 | 8, _) if !self.apart => self.lifted_above(normals),
-            (9, [n, m]) if !self.apart => self.slab(n, m),
+            (7, _) if !self.apart && normals.len() <= MOST_PLANES => self.lifted_above(normals),
+            (8, [n, m]) if !self.apart => self.slab(n, m),
             // Clear cells are known, and middles.
             _ => None,
         }
@@ -148,7 +148,7 @@ impl Near<'_> {
         (value + off <= self.farthest()).then_some(value + off)
     }
 
-    /// Lifted above two or three planes.
+    /// Lifted above several planes.
     fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
         let reach: Vec<f64> = normals
             .iter()
@@ -188,8 +188,7 @@ impl Near<'_> {
     }
 }
 
-/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet some of them exactly, and for these, all
-/// others too.
+/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet up to three of them exactly, and all others too.
 fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let mut best: Option<V3> = None;
@@ -215,21 +214,15 @@ fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
                 );
                 take(add(&scaled(a, alpha), &scaled(b, beta)));
             }
-        }
-    }
-    if let [a, b, c] = normals {
-        // Cramer's rule.
-        let volume = dot(a, &cross(b, c));
-        let parts = [
-            (cross(b, c), needs[0]),
-            (cross(c, a), needs[1]),
-            (cross(a, b), needs[2]),
-        ];
-        let sum = parts
-            .iter()
-            .fold([0.0; 3], |sum, (part, need)| add(&sum, &scaled(part, *need)));
-        if volume.abs() > 1e-9 {
-            take(scaled(&sum, 1.0 / volume));
+            for (k, c) in normals.iter().enumerate().take(j) {
+                // Cramer's rule.
+                let parts = [(cross(b, c), i), (cross(c, a), j), (cross(a, b), k)];
+                let volume = dot(a, &parts[0].0);
+                let part = |sum: V3, (part, k): &(V3, usize)| add(&sum, &scaled(part, needs[*k] / volume));
+                if volume.abs() > 1e-9 {
+                    take(parts.iter().fold([0.0; 3], part));
+                }
+            }
         }
     }
     best

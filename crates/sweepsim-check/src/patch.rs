@@ -135,16 +135,15 @@ impl Patch {
         (least > 0.09).then_some((points, middle))
     }
 
-    /// Its halves, between two of its corners or of its normals.
-    pub fn halves(&self, of_normals: bool, [i, j]: [usize; 2]) -> Option<[Self; 2]> {
+    /// Its parts between two of its corners, divided at a part of the way; or without that, between two of its normals.
+    pub fn halves(&self, part: Option<f64>, [i, j]: [usize; 2]) -> Option<[Self; 2]> {
+        let of_normals = part.is_none();
         let all = if of_normals { &self.normals } else { &self.corners };
         let [p, q] = [*all.get(i)?, *all.get(j)?];
-        let sum = add(&p, &q);
-        // Three corners, or three normals, are the corners of a triangle: its halves cover it. More are not.
-        let middle = if of_normals {
-            unit(&sum).filter(|_| norm(&sum) > 1e-6)?
-        } else {
-            scaled(&sum, 0.5)
+        // Three corners, or three normals, are the corners of a triangle: its parts cover it. More are not.
+        let middle = match part {
+            Some(part) => add(&p, &scaled(&sub(&q, &p), part)),
+            None => unit(&add(&p, &q)).filter(|_| norm(&add(&p, &q)) > 1e-6)?,
         };
         let half = |end: usize| {
             let mut half = self.clone();
@@ -156,7 +155,8 @@ impl Patch {
             own[end] = middle;
             half
         };
-        (i != j && all.len() <= 3).then(|| [half(i), half(j)])
+        let is_between = part.is_none_or(|part| (0.0..=1.0).contains(&part));
+        (is_between && i != j && all.len() <= 3).then(|| [half(i), half(j)])
     }
 
     /// The patches of any three normals.

@@ -177,7 +177,10 @@ impl<'a> Walk<'a> {
                 }
             }
             kind => {
-                let count = *NORMALS.get(usize::from(kind))?;
+                let count = match kind {
+                    7 => usize::from(self.reader.byte()?),
+                    _ => *NORMALS.get(usize::from(kind))?,
+                };
                 let normals: Vec<V3> = (0..count).map(|_| self.normal()).collect::<Option<_>>()?;
                 match self.bound(cell, when, kind, &normals) {
                     None => self.fail(cell, when, REASONS[usize::from(kind)]),
@@ -289,10 +292,10 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// How many normals a leaf has, by its kind.
-const NORMALS: [usize; 10] = [0, 0, 0, 0, 0, 1, 1, 2, 3, 2];
+/// How many normals a leaf has, by its kind; of the one above several planes, it says so itself.
+const NORMALS: [usize; 9] = [0, 0, 0, 0, 0, 1, 1, 0, 2];
 /// What is said of a leaf that does not hold.
-const REASONS: [&str; 10] = [
+const REASONS: [&str; 9] = [
     "",
     "",
     "the swept box does not miss the cell",
@@ -300,7 +303,6 @@ const REASONS: [&str; 10] = [
     "the depth of the middle is not known",
     "no plane separates the solid from the cell",
     "the solid is not lifted out",
-    "the solid is not lifted above both planes",
     "the solid is not lifted above the planes",
     "it is not between both planes",
 ];

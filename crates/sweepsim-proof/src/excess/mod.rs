@@ -15,9 +15,11 @@ mod removed;
 mod search;
 mod stock;
 mod surface;
+mod times;
 
 pub use record::PatchTrees;
-pub(crate) use removed::{Course, from_axis, level_at, lowest, narrowed, quick, stays_away};
+pub(crate) use removed::Course;
 pub use search::{Left, highest, highest_from, margin};
 pub(crate) use stock::Before;
 pub use stock::regions;
+pub(crate) use times::{from_axis, level_at, lowest, narrowed, quick, stays_away};

@@ -8,8 +8,8 @@
 //! | 1 | Outside of the stock. |
 //! | 2 | Nearer to a triangle: its number. |
 //! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
-//! | 10, 11, 12 | Halved between the corners 0 and 1, 0 and 2, or 1 and 2. |
-//! | 13, 14, 15 | The same of normals. |
+//! | 10, 11, 12 | Parted between the corners 0 and 1, 0 and 2, or 1 and 2: at which part of the way, an `f32`. |
+//! | 13, 14, 15 | Halved between two normals. |
 //! | 16 | For any three of its normals. |
 
 use super::removed::Holder;
@@ -28,6 +28,7 @@ pub(super) enum Step {
     /// A patch of the surface begins.
     Begin,
     Byte(u8),
+    Halved(Halved),
     /// The tree of a part follows.
     Part(usize),
 }
@@ -67,7 +68,7 @@ impl Record {
     }
 
     pub fn halved(&mut self, halved: Halved) {
-        self.0.push(byte_of(halved));
+        self.0.extend(bytes_of(halved));
     }
 
     /// In groups of seven bits, the lowest first.
@@ -80,12 +81,12 @@ impl Record {
     }
 }
 
-fn byte_of(halved: Halved) -> u8 {
-    let (first, pair) = match halved {
-        Halved::Corners(pair) => (10, pair),
-        Halved::Normals(pair) => (13, pair),
-    };
-    first + (pair[0] + pair[1] - 1) as u8
+fn bytes_of(halved: Halved) -> SmallVec<[u8; 5]> {
+    let byte = |first: u8, [i, j]: [usize; 2]| first + (i + j - 1) as u8;
+    match halved {
+        Halved::Corners(pair, part) => std::iter::once(byte(10, pair)).chain(part.to_le_bytes()).collect(),
+        Halved::Normals(pair) => SmallVec::from_slice(&[byte(13, pair)]),
+    }
 }
 
 /// The patches of the surface in parts, the large ones halved; and how they make up the surface.
@@ -100,9 +101,9 @@ pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch
         }
         let mut open: Vec<Patch> = own.into_iter().rev().collect();
         while let Some(patch) = open.pop() {
-            let halves = patch.halves(0.0, f64::MIN_POSITIVE, &[]);
+            let halves = patch.halves(0.0, f64::MIN_POSITIVE, None);
             if let Some((halved, [first, second])) = halves.filter(|_| is_large(&patch)) {
-                steps.push(Step::Byte(byte_of(halved)));
+                steps.push(Step::Halved(halved));
                 open.extend([second, first]);
             } else {
                 steps.push(Step::Part(parts.len()));
@@ -130,6 +131,7 @@ pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
         match step {
             Step::Begin => *count += 1,
             Step::Byte(byte) => bytes.push(*byte),
+            Step::Halved(halved) => bytes.extend(bytes_of(*halved)),
             Step::Part(part) => bytes.extend_from_slice(&records[*part].0),
         }
     }

@@ -13,6 +13,14 @@ use smallvec::SmallVec;
 type Vectors = SmallVec<[Vector3<f64>; 3]>;
 /// Triangles, each with a corner.
 type Sides = SmallVec<[(usize, usize); 1]>;
+/// What is known of the points of a patch.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    /// Whether one needs no other reason.
+    pub is_free: &'a dyn Fn(&Vector3<f64>) -> bool,
+    /// How far apart the places are from which a cutter holds two of them.
+    pub apart: &'a dyn Fn([&Vector3<f64>; 2]) -> f64,
+}
 /// A few points.
 pub(super) type Points = SmallVec<[Vector3<f64>; 12]>;
 
@@ -26,7 +34,8 @@ pub(super) struct Patch {
 /// Between which of its corners or normals a patch is halved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Halved {
-    Corners([usize; 2]),
+    /// At this part of the way from the first to the second.
+    Corners([usize; 2], f32),
     Normals([usize; 2]),
 }
 
@@ -35,6 +44,10 @@ pub(super) enum Halved {
 const WIDE: f64 = 0.3;
 /// No patch is made so many times longer than it is wide, on purpose.
 const THIN: f64 = 4096.0;
+/// Corners that a cutter holds from places that are less apart, in parts of the longest side, are held together.
+const APART: f64 = 0.02;
+/// Steps of the search for where a way is no longer free: so many digits, and the part is a short number.
+const PARTINGS: usize = 16;
 /// Normals that differ less are the same, for what a patch is: every test of it has a larger margin. A checker takes
 /// twice as much.
 const SAME: f64 = 5e-10;
@@ -176,6 +189,15 @@ impl Patch {
         Some((points, middle + mean * d))
     }
 
+    /// The points of the patch over a place.
+    fn over(&self, place: &Vector3<f64>, d: f64) -> Points {
+        let of_one = Self {
+            corners: [*place].into_iter().collect(),
+            normals: self.normals.clone(),
+        };
+        of_one.points(d).map(|(points, _)| points).unwrap_or_default()
+    }
+
     /// The largest distance between two of its corners.
     pub fn length(&self) -> f64 {
         let pairs = self.corners.iter().enumerate();
@@ -190,9 +212,9 @@ impl Patch {
         (middle, mean.try_normalize(1e-3).unwrap_or(self.normals[0]))
     }
 
-    /// Two parts of it, or nothing if it is as small as it should be. `held`: which of its points are held; corners of
-    /// which one is and the other is not are parted, so that what is left is thin.
-    pub fn halves(&self, d: f64, least: f64, held: &[bool]) -> Option<(Halved, [Self; 2])> {
+    /// Two parts of it, or nothing if it is as small as it should be. Between corners of which one is free and the
+    /// other is not, it is parted where that ends; else where a cutter would have to be at places that are far apart.
+    pub fn halves(&self, d: f64, least: f64, around: Option<Around>) -> Option<(Halved, [Self; 2])> {
         let longest = |vectors: &Vectors| {
             let mut best = (0.0, 0, 0);
             for i in 0..vectors.len() {
@@ -218,32 +240,42 @@ impl Patch {
         // More normals than three are close to each other.
         let is_wide = angle > WIDE && d > 0.0;
         if self.normals.len() > 3 || length >= d * angle && !is_wide {
-            let of_corner = |corner: usize| {
-                let each = held.len() / self.corners.len();
-                each > 0 && held[corner * each..(corner + 1) * each].iter().all(|held| *held)
-            };
-            let is_held: SmallVec<[bool; 3]> = (0..self.corners.len()).map(of_corner).collect();
             let area = match self.corners[..] {
                 [a, b, c] => (b - a).cross(&(c - a)).norm(),
                 _ => length * length,
             };
-            if is_held.contains(&true) && is_held.contains(&false) && area > length * length / THIN {
-                let mut own = 0.0;
-                for (a, b) in [(1, 0), (2, 0), (2, 1)].into_iter().filter(|(a, _)| *a < is_held.len()) {
-                    let between = (self.corners[a] - self.corners[b]).norm();
-                    if is_held[a] != is_held[b] && between > own {
+            let mut part = 0.5;
+            if let Some(Around { is_free, apart }) = around.filter(|_| area > length * length / THIN) {
+                let is_free = |corner: &Vector3<f64>| self.over(corner, d).iter().all(is_free);
+                let free: SmallVec<[bool; 3]> = self.corners.iter().map(is_free).collect();
+                let is_mixed = free.contains(&true) && free.contains(&false);
+                let mut own = if is_mixed { 0.0 } else { APART * length };
+                for (a, b) in [(1, 0), (2, 0), (2, 1)].into_iter().filter(|(a, _)| *a < free.len()) {
+                    let ends = [&self.corners[a], &self.corners[b]];
+                    let between = match is_mixed {
+                        true if free[a] == free[b] => 0.0,
+                        true => (ends[0] - ends[1]).norm(),
+                        false => apart(ends),
+                    };
+                    if between > own {
                         (own, i, j) = (between, a, b);
                     }
                 }
+                if is_mixed {
+                    let [first, second] = [i.min(j), i.max(j)];
+                    let way = self.corners[second] - self.corners[first];
+                    part = parted(|part| is_free(&(self.corners[first] + way * part)), free[first]);
+                }
             }
-            let middle = (self.corners[i] + self.corners[j]) * 0.5;
             let ends = [i.min(j), i.max(j)];
+            let [from, to] = ends.map(|end| self.corners[end]);
+            let middle = from + (to - from) * f64::from(part);
             return (length > 0.0).then(|| {
                 let half = |end| Self {
                     corners: replaced(&self.corners, end, middle),
                     normals: self.normals.clone(),
                 };
-                (Halved::Corners(ends), ends.map(half))
+                (Halved::Corners(ends, part), ends.map(half))
             });
         }
         let middle = (self.normals[k] + self.normals[l]).try_normalize(1e-9);
@@ -264,6 +296,23 @@ impl Patch {
         };
         Some((Halved::Normals(ends), ends.map(half)))
     }
+}
+
+/// The part of a way up to which, from the end that is free, it is free: at least half of it.
+fn parted(is_free: impl Fn(f64) -> bool, from_first: bool) -> f32 {
+    let at = |part: f64| if from_first { part } else { 1.0 - part };
+    let (mut low, mut high) = (0.5, 1.0);
+    if is_free(at(low)) {
+        for _ in 0..PARTINGS {
+            let middle = 0.5 * (low + high);
+            if is_free(at(middle)) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+    at(low) as f32
 }
 
 #[cfg(test)]
@@ -288,7 +337,7 @@ mod tests {
                 parts += 1;
                 assert!(parts < 64, "{normals:?}");
                 if patch.points(0.1).is_none() {
-                    open.extend(patch.halves(0.1, 0.0, &[]).expect("halves").1);
+                    open.extend(patch.halves(0.1, 0.0, None).expect("halves").1);
                 }
             }
         }

@@ -17,6 +17,9 @@ pub struct Placement {
 /// A unit vector that moves no faster keeps still, but for rounding.
 const STILL: f64 = 1e-13;
 
+/// A tip that rises by no more keeps its height, in millimetres.
+const LEVEL: f64 = 1e-9;
+
 /// How fast something moves, and how fast that changes, for `t` in `[0, 1]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rates {
@@ -47,6 +50,7 @@ struct Bent {
     segment: Segment,
     tip: Form,
     axis: Form,
+    is_level: bool,
 }
 
 type Form = SmallVec<[Vector4<f64>; 3]>;
@@ -67,8 +71,14 @@ impl Stretch {
                     let all = points.iter().zip(weights);
                     all.map(|(point, weight)| point.push(*weight)).collect()
                 };
-                let (tip, axis) = (form(&points, &weights), form(&axes, segment.weights()));
-                Box::new(Bent { segment, tip, axis })
+                let (tip, axis): (Form, Form) = (form(&points, &weights), form(&axes, segment.weights()));
+                let is_level = axis_rates.speed <= STILL && is_level(&tip, &ends[0].axis);
+                Box::new(Bent {
+                    segment,
+                    tip,
+                    axis,
+                    is_level,
+                })
             }),
             ends,
             number,
@@ -106,6 +116,19 @@ impl Stretch {
         self.bent.is_none()
     }
 
+    /// Whether the axis stays the same and the tip does not move along it, as good as.
+    pub fn is_level(&self) -> bool {
+        self.bent.as_ref().is_some_and(|bent| bent.is_level)
+    }
+
+    /// Where the tip is.
+    pub fn tip(&self, t: f64) -> Vector3<f64> {
+        match &self.bent {
+            Some(bent) => value(&bent.tip, t),
+            None => self.at(t).tip,
+        }
+    }
+
     /// The axis turns by no more than this, in radians.
     pub fn turning(&self) -> f64 {
         if self.keeps_axis() { 0.0 } else { self.axis.speed }
@@ -116,7 +139,10 @@ impl Stretch {
         match &self.bent {
             Some(bent) => Placement {
                 tip: value(&bent.tip, t),
-                axis: value(&bent.axis, t).normalize(),
+                axis: match self.keeps_axis() {
+                    true => from.axis,
+                    false => value(&bent.axis, t).normalize(),
+                },
             },
             None => Placement {
                 tip: from.tip + (to.tip - from.tip) * t,
@@ -146,6 +172,15 @@ impl Stretch {
         let turning = self.axis.bend + self.axis.speed * self.axis.speed;
         (self.tip.bend + turning * reach) * duration * duration / 8.0
     }
+}
+
+/// Whether what the form describes is as high along an axis all the time.
+fn is_level(form: &Form, axis: &Vector3<f64>) -> bool {
+    let heights = form.iter().map(|point| axis.dot(&point.xyz()) / point.w);
+    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| {
+        [low.min(c), high.max(c)]
+    });
+    high - low <= LEVEL
 }
 
 /// By de Casteljau, but for the many with three coefficients.

@@ -11,9 +11,9 @@
 //! most their mean, which is nearly constant where the normals are nearly opposite: half the thickness of a rib.
 
 use super::reach::During;
-use super::trace::{Normals, Reason};
-use crate::solid::{Cell, MOST_WAYS, Normal, Triangle, Way, Written, is_outside};
-use nalgebra::{Matrix3, Vector3};
+use super::trace::{NO_NORMALS, Normals, Reason, one};
+use crate::solid::{Cell, MOST_PLANES, MOST_WAYS, Normal, Triangle, Way, Written, is_outside};
+use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 /// A bound of the depth, and what it was found with.
@@ -29,13 +29,15 @@ pub(super) struct Depth {
 }
 
 fn of_one(written: Written) -> (Reason, Normals) {
-    (Reason::Lifted, [Some(written), None, None])
+    (Reason::Lifted, one(written))
 }
 
 /// So many of the directions are tried together.
 const TOGETHER: usize = 4;
 /// Depths that differ by no more, in parts of half a cell, are about the same.
 const ABOUT: f64 = 1e-6;
+/// What is lifted above several planes is lifted by so much more, in parts of coordinates.
+const ROUNDING: f64 = 1e-12;
 /// Steps of a descent.
 const STEPS: usize = 8;
 
@@ -54,7 +56,7 @@ impl Above<'_> {
             value: f64::INFINITY,
             normal: ways.first().map_or_else(Vector3::z, |way| way.normal),
             place: None,
-            reason: (Reason::Lifted, [None; 3]),
+            reason: (Reason::Lifted, NO_NORMALS),
         };
         let mut below = [0.0; MOST_WAYS + 1];
         for (way, below) in ways.iter().zip(&mut below) {
@@ -65,6 +67,15 @@ impl Above<'_> {
                 if value <= enough {
                     return best;
                 }
+            }
+        }
+        // In a hollow, each triangle is below its own plane.
+        let faces = self.cell.faces(self.triangles);
+        if !faces.is_empty() {
+            let below = faces.iter().map(|normal| (*normal, self.below(&normal.vector)));
+            self.lift(&below.collect::<SmallVec<[_; MOST_PLANES]>>(), &mut best);
+            if best.value <= enough {
+                return best;
             }
         }
         // Where all faces look about the same way, several planes are no better than one.
@@ -78,9 +89,10 @@ impl Above<'_> {
                 if a.normal.dot(&b.normal) < -0.5 {
                     self.slab(a, b, &mut best);
                 } else {
-                    self.lift(&[(a, below[i]), (b, below[j])], &mut best);
+                    let [a, b] = [(a.short(), below[i]), (b.short(), below[j])];
+                    self.lift(&[a, b], &mut best);
                     for (k, c) in ways.iter().enumerate().take(j) {
-                        self.lift(&[(a, below[i]), (b, below[j]), (c, below[k])], &mut best);
+                        self.lift(&[a, b, (c.short(), below[k])], &mut best);
                     }
                 }
                 if best.value <= enough {
@@ -111,20 +123,24 @@ impl Above<'_> {
                 value,
                 normal: a.normal,
                 place: Some(middle),
-                reason: (Reason::Slab, [Some(a.written), Some(b.written), None]),
+                reason: (Reason::Slab, {
+                    let mut normals = one(a.written);
+                    normals[1] = Some(b.written);
+                    normals
+                }),
             };
         }
     }
 
     /// Above several planes at once.
-    fn lift(&self, planes: &[(&Way, f64)], best: &mut Depth) {
-        let mut tops = [f64::NEG_INFINITY; 3];
+    fn lift(&self, planes: &[(Normal, f64)], best: &mut Depth) {
+        let mut tops = [f64::NEG_INFINITY; MOST_PLANES];
         // Each triangle has to be below one of the planes: the first of those that the solid is about least below, so
         // that rounding does not decide, and a checker chooses the same.
         for piece in self.cell.pieces() {
-            let (mut own, mut least) = ([f64::INFINITY; 3], f64::INFINITY);
+            let (mut own, mut least) = ([f64::INFINITY; MOST_PLANES], f64::INFINITY);
             for (own, (way, below)) in own.iter_mut().zip(planes) {
-                let heights = piece.corners.iter().map(|corner| way.normal.dot(corner));
+                let heights = piece.corners.iter().map(|corner| way.vector.dot(corner));
                 *own = heights.fold(f64::NEG_INFINITY, f64::max);
                 least = least.min(*own + below);
             }
@@ -139,16 +155,18 @@ impl Above<'_> {
         }
         // Planes with nothing below them are not needed, and nothing is lowered.
         let half = self.cell.half;
+        // Between opposite planes, what just fits may not fit a checker.
+        let rounding = ROUNDING * (self.cell.centre.amax() + half);
         let used = planes.iter().zip(tops).filter(|(_, top)| *top > f64::NEG_INFINITY);
-        let (mut normals, mut needs, mut own) = (SmallVec::<[Vector3<f64>; 3]>::new(), [0.0; 3], [0.0; 3]);
-        let mut written = [None; 3];
+        let (mut needs, mut own) = ([0.0; MOST_PLANES], [0.0; MOST_PLANES]);
+        let (mut normals, mut written) = (SmallVec::<[Vector3<f64>; MOST_PLANES]>::new(), NO_NORMALS);
         for (i, ((way, below), top)) in used.enumerate() {
-            normals.push(way.normal);
+            normals.push(way.vector);
             written[i] = Some(way.written);
-            needs[i] = (top + below).max(-half);
-            own[i] = (top - way.normal.dot(&self.cell.centre)).max(-half) + 0.01 * half;
+            needs[i] = (top + below).max(-half) + rounding;
+            own[i] = (top - way.vector.dot(&self.cell.centre)).max(-half) + 0.01 * half;
         }
-        let Some(lift) = shortest(&normals, &needs) else {
+        let Some(lift) = shortest(&normals, &needs[..normals.len()]) else {
             return;
         };
         let value = lift.norm();
@@ -156,13 +174,14 @@ impl Above<'_> {
             return;
         }
         // A point above all planes, within the surroundings.
-        let Some(off) = shortest(&normals, &own).filter(|off| off.amax() <= half) else {
+        let Some(off) = shortest(&normals, &own[..normals.len()]).filter(|off| off.amax() <= half + self.cell.lift)
+        else {
             return;
         };
         if is_outside(&(self.cell.centre + off), self.cell.pieces(), self.triangles) == Some(true) {
             let normal = lift.try_normalize(1e-9 * half).unwrap_or(normals[0]);
-            let reasons = [Reason::Lifted, Reason::LiftedTwice, Reason::LiftedThrice];
-            let reason = (reasons[normals.len() - 1], written);
+            let several = normals.len() > 1;
+            let reason = (if several { Reason::LiftedAbove } else { Reason::Lifted }, written);
             *best = Depth {
                 value,
                 normal,
@@ -242,7 +261,7 @@ impl Above<'_> {
 
 /// The shortest vector `w` with `⟨nᵢ, w⟩ ≥ dᵢ` for all `i`, of those that meet some of them exactly. Any that is found
 /// meets all of them, but for rounding.
-fn shortest(normals: &[Vector3<f64>], needs: &[f64; 3]) -> Option<Vector3<f64>> {
+fn shortest(normals: &[Vector3<f64>], needs: &[f64]) -> Option<Vector3<f64>> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let meets = |w: &Vector3<f64>| {
         let all = || normals.iter().zip(needs);
@@ -266,12 +285,15 @@ fn shortest(normals: &[Vector3<f64>], needs: &[f64; 3]) -> Option<Vector3<f64>> 
                 let beta = (needs[j] - cosine * needs[i]) / scale;
                 take(a * alpha + b * beta);
             }
+            for (k, c) in normals.iter().enumerate().take(j) {
+                let across = b.cross(c);
+                let volume = a.dot(&across);
+                if volume.abs() > 1e-6 {
+                    let sum = across * needs[i] + c.cross(a) * needs[j] + a.cross(b) * needs[k];
+                    take(sum / volume);
+                }
+            }
         }
-    }
-    if let [a, b, c] = normals
-        && let Some(inverse) = Matrix3::from_rows(&[a.transpose(), b.transpose(), c.transpose()]).try_inverse()
-    {
-        take(inverse * Vector3::from(*needs));
     }
     best
 }

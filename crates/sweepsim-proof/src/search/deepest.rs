@@ -4,52 +4,18 @@ use super::bound::{Above, Depth};
 use super::found::{Found, MOST_OPEN};
 use super::pair::{Pair, When};
 use super::reach::During;
-use super::trace::{Reason, Trace};
+use super::trace::{NO_NORMALS, Reason, Trace, one};
+use super::wanted::{Wanted, enough};
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::Witness;
 use nalgebra::Vector3;
 use std::collections::BinaryHeap;
 
-/// What is wanted of a search.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
-    pub limit: f64,
-    /// Of the enclosure.
-    pub width: f64,
-    /// Added to every bound: rounding, and how far the segments are from the moves.
-    pub allowance: f64,
-    /// What is missed by no more is not said to be missed: a checker's bounds are a little wider.
-    pub slack: f64,
-    /// So many pairs of a cell and a time may be looked at.
-    pub pairs: usize,
-    /// Some point is known to be so deep.
-    pub known: f64,
-    /// Whether a tree is left for a checker.
-    pub recorded: bool,
-}
-
-/// Where cutters go deep, the enclosure may be as wide as this part of the depth.
-const SHARE: f64 = 1.0 / 64.0;
-/// And where they go far beyond the limit, as this part of what is beyond so many limits.
-const FAR: f64 = 1.0 / 8.0;
-const FAR_LIMITS: f64 = 16.0;
-
-/// Whether a limit is kept need not be known where the deepest place is nearer to it than this part of the width.
-const LEAST: f64 = 0.1;
-
-/// If some point is known to be so deep, what is no deeper than this is done. Whether the limit is kept is to be known.
-pub(super) fn enough(known: f64, width: f64, limit: f64) -> f64 {
-    let far = (known - FAR_LIMITS * limit.abs()) * FAR;
-    let enough = known + width.max(known * SHARE).max(far);
-    if known > limit {
-        return enough;
-    }
-    enough.min(limit.max(known + LEAST * width))
-}
-
 /// Runs of more stretches along which the axis turns are divided before they are looked at.
 const MOST_TURNING: usize = 4;
+/// Where a path bends by more than this part of what may be lifted, nothing is known of it.
+const STRAIGHT: f64 = 0.5;
 /// Cells smaller than so many wanted widths are bounded by the depth of their middle, too.
 const FINE: f64 = 16.0;
 
@@ -197,10 +163,14 @@ impl<'a> Search<'a> {
             value: pair.depth,
             normal: Vector3::z(),
             place: None,
-            reason: (Reason::Middle, [None; 3]),
+            reason: (Reason::Middle, NO_NORMALS),
         };
         // Whether shorter times would do, as the path would bend less.
         let mut bends = false;
+        let straight = match pieces {
+            0..=MOST_PIECES => STRAIGHT * cell.lift,
+            _ => cell.half,
+        };
         if few && pieces <= MOST_PIECES {
             let above = Above {
                 during,
@@ -224,8 +194,8 @@ impl<'a> Search<'a> {
             }
             if depth.value > self.enough() {
                 if let Some(normal) = above.separating(self.wanted.slack) {
-                    let normals = [Some(normal), None, None];
-                    self.trace.bound(node, Reason::Separated, normals, f64::NEG_INFINITY);
+                    self.trace
+                        .bound(node, Reason::Separated, one(normal), f64::NEG_INFINITY);
                     return;
                 }
                 self.sample(when, &during, &depth);
@@ -234,7 +204,7 @@ impl<'a> Search<'a> {
         if depth.value <= self.enough() {
             self.settle(depth.value);
         } else if cell.half < 0.05 * self.wanted.width
-            || !self.divide((cell, node), when, (depth.value, bends || during.bend > cell.half))
+            || !self.divide((cell, node), when, (depth.value, bends || during.bend > straight))
         {
             self.leave(pair, depth.value);
         }
@@ -307,7 +277,7 @@ impl<'a> Search<'a> {
                 0 => depth.min(self.deepest_by_middle(child, node)),
                 1..=MOST_PIECES => {
                     let (own, way) = child.depth(&target.triangles);
-                    let normals = [way.map(|way| way.written), None, None];
+                    let normals = way.map_or(NO_NORMALS, |way| one(way.written));
                     self.trace.bound(node, Reason::Lifted, normals, own);
                     depth.min(own)
                 }
@@ -325,13 +295,13 @@ impl<'a> Search<'a> {
     /// A bound of a cell by the depth of its middle.
     fn deepest_by_middle(&mut self, cell: &Cell, node: u32) -> f64 {
         let depth = cell.deepest(&self.target.distance);
-        self.trace.bound(node, Reason::Middle, [None; 3], depth);
+        self.trace.bound(node, Reason::Middle, NO_NORMALS, depth);
         depth
     }
 
     /// Nothing of the solid is in the target here.
     fn nothing(&mut self, node: u32, reason: Reason) {
-        self.trace.bound(node, reason, [None; 3], f64::NEG_INFINITY);
+        self.trace.bound(node, reason, NO_NORMALS, f64::NEG_INFINITY);
     }
 
     /// Looks at points of the solid that may be the deepest.

@@ -5,7 +5,7 @@ use super::gouge::Limits;
 use super::near::{Found, MOST_OPEN, enough};
 use super::pair::{Pair, When};
 use super::reach::During;
-use super::trace::{Reason, Trace};
+use super::trace::{NO_NORMALS, Reason, Trace, one};
 use crate::motion::Run;
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::Witness;
@@ -155,7 +155,7 @@ impl<'a> Search<'a> {
         } else {
             Reason::Separated
         };
-        self.trace.bound(node, reason, [Some(normal.written), None, None], -own);
+        self.trace.bound(node, reason, one(normal.written), -own);
         let (distance, normal) = (own.max(-pair.depth), normal.vector);
         if distance >= self.enough() {
             return self.settle(distance);
@@ -234,7 +234,7 @@ impl<'a> Search<'a> {
 
     /// Nothing of the surface is here.
     fn nothing(&mut self, node: u32) {
-        self.trace.bound(node, Reason::Outside, [None; 3], f64::NEG_INFINITY);
+        self.trace.bound(node, Reason::Outside, NO_NORMALS, f64::NEG_INFINITY);
     }
 
     fn see(&mut self, piece: usize, t: f64, place: Vector3<f64>, distance: f64) {

@@ -11,14 +11,15 @@
 //! | 3 | Nothing of the surface is near the cell, and it is outside of the target; of distances, only the former. |
 //! | 4 | Bound by the depth of the cell's middle. |
 //! | 5 | A plane separates the solid from the cell: a normal. |
-//! | 6, 7, 8 | The solid, or all of the cell, lifted above one, two or three planes: their normals. |
-//! | 9 | Between two planes: their normals. |
+//! | 6 | The solid, or all of the cell, lifted above a plane: its normal. |
+//! | 7 | The same above several planes at once: how many, a byte, and their normals. |
+//! | 8 | Between two planes: their normals. |
 //!
 //! A normal is a number `k`: 0, and three `f32`; or 1, and the number of a triangle; or that which was written
 //! `k − 1` normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its
 //! highest bit set.
 
-use crate::solid::Written;
+use crate::solid::{MOST_PLANES, Written};
 use std::collections::HashMap;
 
 /// Why no point in a cell is deeper at a time. Less than no depth is a distance.
@@ -30,33 +31,30 @@ pub(super) enum Reason {
     Middle = 4,
     Separated = 5,
     Lifted = 6,
-    LiftedTwice = 7,
-    LiftedThrice = 8,
-    Slab = 9,
+    LiftedAbove = 7,
+    Slab = 8,
 }
 
-impl Reason {
-    /// How many normals it has.
-    fn normals(self) -> usize {
-        match self {
-            Self::Missed | Self::Outside | Self::Middle => 0,
-            Self::Separated | Self::Lifted => 1,
-            Self::LiftedTwice | Self::Slab => 2,
-            Self::LiftedThrice => 3,
-        }
-    }
-}
+/// The normals of a bound.
+pub(super) type Normals = [Option<Written>; MOST_PLANES];
+/// Of a bound without any.
+pub(super) const NO_NORMALS: Normals = [None; MOST_PLANES];
 
-/// The normals of a bound, at most three.
-pub(super) type Normals = [Option<Written>; 3];
+/// Of a bound with one.
+pub(super) fn one(normal: Written) -> Normals {
+    let mut normals = NO_NORMALS;
+    normals[0] = Some(normal);
+    normals
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
     /// No point is deeper.
     value: f64,
     reason: Option<Reason>,
-    /// Where its normals begin.
+    /// Where its normals begin, and how many they are.
     normals: u32,
+    count: u8,
     divided: Division,
 }
 
@@ -73,6 +71,7 @@ const NODE: Node = Node {
     value: f64::INFINITY,
     reason: None,
     normals: 0,
+    count: 0,
     divided: Division::None,
 };
 
@@ -103,6 +102,7 @@ impl Trace {
         if value < node.value {
             (node.value, node.reason, node.normals) = (value, Some(reason), self.normals.len() as u32);
             self.normals.extend(normals.iter().flatten());
+            node.count = (self.normals.len() - node.normals as usize) as u8;
         }
     }
 
@@ -137,8 +137,11 @@ impl Trace {
             let node = &nodes[number as usize];
             if let Some(reason) = node.reason.filter(|_| node.value + allowance <= bound) {
                 written.bytes.push(reason as u8);
+                if reason == Reason::LiftedAbove {
+                    written.bytes.push(node.count);
+                }
                 let normals = &self.normals[node.normals as usize..];
-                normals[..reason.normals()]
+                normals[..usize::from(node.count)]
                     .iter()
                     .for_each(|normal| written.normal(*normal));
                 continue;

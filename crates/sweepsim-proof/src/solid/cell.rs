@@ -31,6 +31,8 @@ struct Known {
     /// The corners of the pieces, each once.
     corners: Vec<Vector3<f64>>,
     ways: Vec<Way>,
+    /// The normals of all triangles, if they are few and some of the surface is in front of others.
+    faces: Vec<Normal>,
     /// Whether all triangles look about the same way.
     is_smooth: bool,
     /// No point of the cell is deeper, and the way that says so.
@@ -54,6 +56,10 @@ pub(crate) struct Cell {
 pub(crate) const MOST_PIECES: usize = 256;
 /// As many directions are tried.
 pub(crate) const MOST_WAYS: usize = 8;
+/// A hollow is deeper than this part of what may have to be lifted.
+const HOLLOW: f64 = 0.02;
+/// Nothing is lifted above more planes together.
+pub(crate) const MOST_PLANES: usize = 8;
 /// Normals whose cosine is larger count as one direction.
 const SAME_WAY: f64 = 0.999;
 /// Normals whose cosine with their mean is larger, all of them, make a smooth surface.
@@ -185,6 +191,11 @@ impl Cell {
         &self.known(triangles).ways
     }
 
+    /// The normals of all triangles near it, those of about the same way once; none if they are many, or no hollow.
+    pub fn faces(&self, triangles: &[Triangle]) -> &[Normal] {
+        &self.known(triangles).faces
+    }
+
     /// Whether all triangles near it look about the same way.
     pub fn is_smooth(&self, triangles: &[Triangle]) -> bool {
         self.known(triangles).is_smooth
@@ -205,10 +216,14 @@ impl Cell {
             let bits = |p: &Vector3<f64>| [p.x, p.y, p.z].map(f64::to_bits);
             corners.sort_unstable_by_key(bits);
             corners.dedup_by_key(|p| bits(p));
-            let (normals, is_smooth) = self.normals(triangles);
+            let (normals, mut faces, is_smooth) = self.normals(triangles);
+            if !self.is_hollow(&faces, triangles, &corners) {
+                faces.clear();
+            }
             let mut known = Known {
                 corners,
                 ways: Vec::new(),
+                faces,
                 is_smooth,
                 depth: (f64::INFINITY, 0),
             };
@@ -224,8 +239,9 @@ impl Cell {
         })
     }
 
-    /// The mean normal and those of the triangles, as far as they differ; and whether all are nearly the same.
-    fn normals(&self, triangles: &[Triangle]) -> (Vec<Normal>, bool) {
+    /// The mean normal and those of the triangles, as far as they differ; the latter alone if these are all; and
+    /// whether all are nearly the same.
+    fn normals(&self, triangles: &[Triangle]) -> (Vec<Normal>, Vec<Normal>, bool) {
         let pieces = self.pieces();
         let mut clusters: Vec<(Normal, f64)> = Vec::new();
         for piece in pieces {
@@ -245,10 +261,24 @@ impl Cell {
         });
         // A stable sort: the largest first. Of a smooth surface, one is enough.
         clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let faces = match clusters.len() {
+            2..=MOST_PLANES => clusters.iter().map(|(normal, _)| *normal).collect(),
+            _ => Vec::new(),
+        };
         clusters.truncate(if is_smooth { 1 } else { MOST_WAYS });
         let own = clusters.iter().map(|(normal, _)| *normal);
         let mean = mean.and_then(|mean| Normal::near(&mean));
-        (mean.into_iter().chain(own).collect(), is_smooth)
+        (mean.into_iter().chain(own).collect(), faces, is_smooth)
+    }
+
+    /// Whether some of the surface is in front of the plane of other of it, by more than does not matter.
+    fn is_hollow(&self, faces: &[Normal], triangles: &[Triangle], corners: &[Vector3<f64>]) -> bool {
+        faces.iter().any(|face| {
+            let is_own = |piece: &&Piece| face.written == Normal::of(&triangles[piece.triangle as usize]).written;
+            let level = |own: &Piece| face.vector.dot(&own.corners[0]) + HOLLOW * self.wanted;
+            let own = self.pieces().iter().find(is_own).map(level);
+            own.is_some_and(|level| highest(corners, &face.vector).0 > level)
+        })
     }
 
     /// What is known of a direction.

@@ -6,7 +6,7 @@ mod outside;
 mod polygon;
 mod way;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_WAYS, Near};
+pub(crate) use cell::{Cell, MOST_PIECES, MOST_PLANES, MOST_WAYS, Near};
 pub(crate) use outside::is_outside;
 pub(crate) use way::{Normal, Triangle, Way, Written};
 

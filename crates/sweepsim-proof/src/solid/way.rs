@@ -56,3 +56,12 @@ pub(crate) struct Way {
     /// Whether beyond that the surroundings are outside of the solid.
     pub out: bool,
 }
+
+impl Way {
+    pub fn short(&self) -> Normal {
+        Normal {
+            vector: self.normal,
+            written: self.written,
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! What is left standing in a slot.
 
-use crate::certificates::check_height;
+use crate::certificates::{certified, check_height};
 use crate::scenes::{radius_at, target, tool};
 use crate::walls::{LIFT, slot};
 use nalgebra::Vector3;
@@ -226,6 +226,12 @@ fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
         found.open.first(),
         found.open_count
     );
+    assert!(found.patches < 20_000, "{}", found.patches);
+    // The cutter goes too deep by what the sides are off the circle; a cell may have several of them.
+    let own = certified(&soup, &tool, &path, &Limits::new(0.02, 0.002, 500_000));
+    let truth = 16.0 * (1.0 - (std::f64::consts::PI / 72.0).cos());
+    own.check(truth - 1e-9);
+    assert!(own.found.bound < 0.02 && own.found.pairs < 40_000, "{:?}", own.found);
 }
 
 /// What stands just below the limit, so that it may be above: a place says so.

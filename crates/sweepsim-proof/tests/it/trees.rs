@@ -15,8 +15,14 @@ pub(crate) fn after(bytes: &[u8], at: usize) -> Option<usize> {
             end
         }
         kind => {
-            let normals = [0, 0, 0, 0, 0, 1, 1, 2, 3, 2][usize::from(kind)];
             let mut end = at + 1;
+            let normals = match kind {
+                7 => {
+                    end += 1;
+                    *bytes.get(at + 1)?
+                }
+                _ => [0, 0, 0, 0, 0, 1, 1, 0, 2][usize::from(kind)],
+            };
             for _ in 0..normals {
                 let number = end;
                 end = last(bytes, end);

@@ -3,7 +3,7 @@
 use super::super::found::Found;
 use super::super::record::{Record, key};
 use super::super::removed::{Holder, Known};
-use super::super::surface::{Halved, Patch};
+use super::super::surface::{Around, Halved, Patch};
 use super::{FINEST, MOST_OPEN, SHARE, STEPS, Scene};
 use crate::motion::Bounds;
 use nalgebra::Vector3;
@@ -28,7 +28,7 @@ impl Search<'_> {
         while let Some(patch) = open.pop() {
             let Some((whole, middle)) = patch.points(self.distance) else {
                 self.found.patches += 1;
-                match patch.halves(self.distance, 0.0, &[]) {
+                match patch.halves(self.distance, 0.0, None) {
                     Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
                     _ => self.leave(&patch.corners),
                 }
@@ -43,9 +43,10 @@ impl Search<'_> {
             }
             self.asks(&points);
             let Known {
-                mut held,
                 holder,
+                nearest,
                 is_removed,
+                ..
             } = scene.removed.held(&points, &middle, self.recent);
             if let Some(holder) = holder {
                 self.recent = Some(holder);
@@ -55,9 +56,6 @@ impl Search<'_> {
             if let Some(corners) = self.near(&whole, &middle) {
                 self.record(|record| record.near(scene.numbers.get(&key(&corners)).copied().unwrap_or(u32::MAX)));
                 continue;
-            }
-            if points.len() != whole.len() {
-                held.clear();
             }
             if !is_removed && self.is_left(&middle) {
                 let height = scene.height(&middle) - scene.removed.margin;
@@ -69,7 +67,16 @@ impl Search<'_> {
                     continue;
                 }
             }
-            match patch.halves(self.distance, FINEST * self.distance, &held) {
+            let is_free = |point: &Vector3<f64>| {
+                let is_held = nearest.is_some_and(|nearest| scene.removed.holds(nearest, point));
+                is_held || !scene.before.holds_around(point, 2.0 * scene.removed.margin)
+            };
+            let apart = |ends: [&Vector3<f64>; 2]| nearest.map_or(0.0, |nearest| scene.removed.apart(nearest, ends));
+            let around = Around {
+                is_free: &is_free,
+                apart: &apart,
+            };
+            match patch.halves(self.distance, FINEST * self.distance, Some(around)) {
                 Some(halves) if self.found.patches < most => self.halve(halves, &mut open),
                 _ => self.leave(&points),
             }
