@@ -1,13 +1,14 @@
-//! Level arcs and helices with which a tool of any shape turns, which charts solve: against charts alone, which also
+//! Level arcs and helices with which a tool of any shape turns, which charts solve: against lines, charts alone, which also
 //! solve joints and straight moves, and against samples in time.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, small};
+use crate::displaced::agree_with;
 use crate::grazing_curves::tools;
 use crate::translations::{TOLERANCE, UP, agree, cases};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use sweepsim::{Options, SweepError, sweep};
+use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Move, Path, Pose, TipArc};
 
@@ -85,6 +86,12 @@ fn turning(start: [f64; 3], stands: f64, arcs: &[Arc], way: [f64; 3]) -> Path {
         .path()
 }
 
+/// Against the roots on each line.
+fn by_lines(number: usize, path: &Path) -> TestCaseResult {
+    let (name, tool) = &tools()[number];
+    agree_with(Method::Lines, name, tool, path, (&grid([13, 11]), TOLERANCE)).map(|_| ())
+}
+
 fn check(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
     let (name, tool) = &tools()[number];
     agree_cheaply(name, tool, path, grid)
@@ -105,13 +112,13 @@ proptest! {
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]
     fn level(number in 0_usize..3, start in small(3.0), stands in -PI..PI, way in small(2.0), arcs in arcs(0.0)) {
-        check(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
+        by_lines(number, &turning(start, stands, &arcs, way))?;
     }
 
     /// Helices.
     #[test]
     fn helices(number in 0_usize..3, start in small(3.0), stands in -PI..PI, way in small(2.0), arcs in arcs(1.5)) {
-        check(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
+        by_lines(number, &turning(start, stands, &arcs, way))?;
     }
 
     /// Many lines over each chart.

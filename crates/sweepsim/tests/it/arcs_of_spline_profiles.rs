@@ -1,12 +1,13 @@
-//! Level arcs and helices of tools whose profile is a spline, which charts solve: against charts alone, which also
+//! Level arcs and helices of tools whose profile is a spline, which charts solve: against lines, and charts alone, which also
 //! solve the rest of the profile, joints and straight moves.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, check_tool_near_material, grid, path, small};
+use crate::displaced::agree_with;
 use crate::translations::{TOLERANCE, UP, agree, cases};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
-use sweepsim::{Options, SweepError, sweep};
+use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
 
@@ -63,6 +64,12 @@ fn tools() -> Vec<(&'static str, Tool)> {
     ]
 }
 
+/// Against the roots on each line.
+fn by_lines(number: usize, path: &Path) -> TestCaseResult {
+    let (name, tool) = &tools()[number];
+    agree_with(Method::Lines, name, tool, path, (&grid([13, 11]), TOLERANCE)).map(|_| ())
+}
+
 fn check(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
     let (name, tool) = &tools()[number];
     agree_cheaply(name, tool, path, grid)
@@ -112,13 +119,13 @@ proptest! {
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]
     fn level(number in 0_usize..6, start in small(3.0), way in small(2.0), arcs in arcs(0.0)) {
-        check(number, &path(start, &arcs, way), &grid([23, 21]))?;
+        by_lines(number, &path(start, &arcs, way))?;
     }
 
     /// Helices.
     #[test]
     fn helices(number in 0_usize..6, start in small(3.0), way in small(2.0), arcs in arcs(1.5)) {
-        check(number, &path(start, &arcs, way), &grid([23, 21]))?;
+        by_lines(number, &path(start, &arcs, way))?;
     }
 
     /// Chains of arcs and straight moves without corners.
