@@ -1,11 +1,10 @@
 //! Branch and bound over times and cells.
 
 use super::bound::{Above, Depth};
-use super::found::{Found, MOST_OPEN};
+use super::found::{Found, MOST_OPEN, Wanted, enough};
 use super::pair::{Pair, When};
 use super::reach::During;
 use super::trace::{NO_NORMALS, Reason, Trace, one};
-use super::wanted::{Wanted, enough};
 use crate::motion::{Run, Stretch};
 use crate::solid::{Cell, MOST_PIECES, Near, Target};
 use crate::statement::Witness;

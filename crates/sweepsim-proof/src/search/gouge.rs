@@ -1,9 +1,8 @@
 //! How deep the cutters of a program go below a target, at every time and in every place.
 
 use super::deepest::Search;
-use super::found::Found;
+use super::found::{Found, Wanted, enough};
 use super::known::{Asking, Part};
-use super::wanted::{Wanted, enough};
 use crate::motion::{Cutter, Run};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};

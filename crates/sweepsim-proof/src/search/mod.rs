@@ -12,7 +12,6 @@ mod nearest;
 mod pair;
 mod reach;
 mod trace;
-mod wanted;
 
 pub use closest::{Closest, closest, closest_from};
 pub(crate) use gouge::TOGETHER;
