@@ -85,6 +85,10 @@ fn radius((lo, hi): Range) -> f64 {
     0.5 * hi - 0.5 * lo
 }
 
+pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
+    (lo - by, hi + by)
+}
+
 pub(super) fn magnitude((lo, hi): Range) -> f64 {
     lo.abs().max(hi.abs())
 }

@@ -2,8 +2,7 @@
 
 use super::super::curves::SHORTEST;
 use super::super::rows::Floor;
-use super::chart::Range;
-use super::tree::widened;
+use super::chart::{Range, widened};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use nalgebra::{Matrix3, Vector3};

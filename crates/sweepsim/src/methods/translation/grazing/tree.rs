@@ -1,6 +1,6 @@
 //! The cells of a patch along the grazing curves of a family of directions, divided as far as lines have asked for.
 
-use super::chart::{Chart, Range, Rough, magnitude};
+use super::chart::{Chart, Range, Rough, magnitude, widened};
 use super::directed_motion::Directions;
 use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
@@ -90,10 +90,6 @@ fn sizes(list: &Triples) -> [f64; 3] {
 /// `Σ |aₖ| bₖ`.
 fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|k| a[k].abs() * b[k]).sum()
-}
-
-pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
-    (lo - by, hi + by)
 }
 
 impl Blur {
