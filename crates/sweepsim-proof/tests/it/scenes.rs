@@ -261,7 +261,9 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
         prop_assert!(!checked(&certified.scene, &claim).is_proven());
     }
     let known = found.deepest.as_ref().map_or(0.0, |(_, witness)| witness.depth);
-    let wide = found.bound - known > limits.width.max(known / 64.0) + 1e-9;
+    // As wide as it may be: a 64th of the depth, and an eighth of what is beyond sixteen limits.
+    let far = (known - 16.0 * limits.depth) / 8.0;
+    let wide = found.bound - known > limits.width.max(known / 64.0).max(far) + 1e-9;
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.
     let decided = known > limits.depth || found.bound <= limits.depth;
     prop_assert!(!wide || decided || !found.open.is_empty());

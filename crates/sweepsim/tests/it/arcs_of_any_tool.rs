@@ -1,5 +1,5 @@
-//! Level arcs and helices with which a tool of any shape turns, which charts solve: against lines, charts alone, which also
-//! solve joints and straight moves, and against samples in time.
+//! Level arcs and helices with which a tool of any shape turns, which charts solve: against the roots on each line,
+//! charts alone, which also solve joints and straight moves, and samples in time.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, small};
 use crate::displaced::agree_with;

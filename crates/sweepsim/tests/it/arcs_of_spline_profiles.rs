@@ -1,5 +1,5 @@
-//! Level arcs and helices of tools whose profile is a spline, which charts solve: against lines, and charts alone, which also
-//! solve the rest of the profile, joints and straight moves.
+//! Level arcs and helices of tools whose profile is a spline, which charts solve: against the roots on each line, and
+//! charts alone, which also solve the rest of the profile, joints and straight moves.
 
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, check_tool_near_material, grid, path, small};
 use crate::displaced::agree_with;
