@@ -205,9 +205,10 @@ impl Removed<'_> {
     /// Whether something holds a point at some time.
     pub fn holds(&self, holder: Holder, point: &Vector3<f64>) -> bool {
         let (level, stretch) = self.of(holder);
-        match stretch.is_straight() {
-            true => is_inside(level, stretch, point, self.margin),
-            false => quick(level, stretch, point).0 <= -self.margin,
+        if stretch.is_straight() {
+            is_inside(level, stretch, point, self.margin)
+        } else {
+            quick(level, stretch, point).0 <= -self.margin
         }
     }
 

@@ -89,10 +89,10 @@ impl Above<'_> {
                 if a.normal.dot(&b.normal) < -0.5 {
                     self.slab(a, b, &mut best);
                 } else {
-                    let [a, b] = [(a.short(), below[i]), (b.short(), below[j])];
+                    let [a, b] = [(a.direction(), below[i]), (b.direction(), below[j])];
                     self.lift(&[a, b], &mut best);
                     for (k, c) in ways.iter().enumerate().take(j) {
-                        self.lift(&[a, b, (c.short(), below[k])], &mut best);
+                        self.lift(&[a, b, (c.direction(), below[k])], &mut best);
                     }
                 }
                 if best.value <= enough {

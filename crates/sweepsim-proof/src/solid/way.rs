@@ -58,7 +58,8 @@ pub(crate) struct Way {
 }
 
 impl Way {
-    pub fn short(&self) -> Normal {
+    /// Its direction alone.
+    pub fn direction(&self) -> Normal {
         Normal {
             vector: self.normal,
             written: self.written,

@@ -267,6 +267,9 @@ fn check(scene: &SceneOf, (times, rings): (usize, usize)) -> Result<[bool; 2], T
     // Nothing is wider than what was asked for, but where the limit is decided, or a place says so.
     let decided = known > limits.depth || found.bound <= limits.depth;
     prop_assert!(!wide || decided || !found.open.is_empty());
+    // Where the limit is not kept, at most a quarter of the depth is left to know, or a place says so.
+    let left = found.bound - known;
+    prop_assert!(known <= limits.depth || left <= limits.width.max(0.25 * known) + 1e-9 || !found.open.is_empty());
     Ok([sampled > 0.02, wide])
 }
 
