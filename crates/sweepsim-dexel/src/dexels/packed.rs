@@ -128,7 +128,7 @@ pub fn unpack_normal(packed: [i16; 2]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn angle(a: [f32; 3], b: [f32; 3]) -> f64 {
         let (a, b) = (a.map(f64::from), b.map(f64::from));

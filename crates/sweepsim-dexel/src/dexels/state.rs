@@ -134,7 +134,7 @@ impl Chunk {
 #[cfg(test)]
 mod tests {
     use crate::{Dexels, Grid, Interval, Operation, Source};
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn cut(line: u32, [lower, length]: [f64; 2], segment: u32, t: f32) -> (u32, Interval) {
         let mut interval = Interval::between(lower, lower + length);
@@ -148,8 +148,8 @@ mod tests {
         /// that the times of their sources lose bits, and were cut away since.
         #[test]
         fn what_is_read_again_goes_on_the_same(
-            first in prop::collection::vec((0..150_u32, -5.0..5.0_f64, 0.01..2.0_f64, 0..2000_u32, 0.0..1.0_f32), 1..900),
-            then in prop::collection::vec((0..150_u32, -5.0..5.0_f64, 0.01..2.0_f64, 0..2000_u32, 0.0..1.0_f32), 1..60),
+            first in collection::vec((0..150_u32, -5.0..5.0_f64, 0.01..2.0_f64, 0..2000_u32, 0.0..1.0_f32), 1..900),
+            then in collection::vec((0..150_u32, -5.0..5.0_f64, 0.01..2.0_f64, 0..2000_u32, 0.0..1.0_f32), 1..60),
         ) {
             let grid = Grid::new([0.0; 2], [15.0, 10.0], [15, 10]).unwrap();
             let cuts = |all: &[(u32, f64, f64, u32, f32)]| -> Vec<_> {

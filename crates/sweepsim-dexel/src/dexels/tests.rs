@@ -1,7 +1,7 @@
 use super::*;
 use crate::intervals::{Crossing, Source};
 use crate::stock::Stock;
-use proptest::prelude::*;
+use sweepsim_props::*;
 
 fn grid(cells: [usize; 2]) -> Grid {
     Grid::new([0.0, 0.0], [cells[0] as f64, cells[1] as f64], cells).unwrap()
@@ -10,7 +10,7 @@ fn grid(cells: [usize; 2]) -> Grid {
 /// Intervals on numbered lines, in any order, overlapping.
 fn pieces(lines: u32) -> impl Strategy<Value = Vec<(u32, Interval)>> {
     let piece = (0..lines, 0..40i32, 0..9i32, 0..700u32, 0.0..=1.0_f32);
-    proptest::collection::vec(piece, 0..90).prop_map(|pieces| {
+    collection::vec(piece, 0..90).prop_map(|pieces| {
         let made = |(line, z, length, segment, t): (u32, i32, i32, u32, f32)| {
             let mut interval = Interval::between(f64::from(z), f64::from(z + length));
             interval.upper.source = Source::Cut { path: 3, segment, t };

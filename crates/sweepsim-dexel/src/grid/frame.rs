@@ -184,10 +184,10 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn vector() -> impl Strategy<Value = [f64; 3]> {
-        proptest::array::uniform3(-10.0..10.0)
+        prop::array::uniform3(-10.0..10.0)
     }
 
     proptest! {

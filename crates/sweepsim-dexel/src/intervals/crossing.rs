@@ -231,7 +231,7 @@ fn chain(group: &[Crossing], mut sum: i32, lower: &mut Option<End>, intervals: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn crossing(z: f64, jump: i8) -> Crossing {
         Crossing {
@@ -246,7 +246,7 @@ mod tests {
         /// Random components, as overlapping intervals: their crossings, shuffled, give their union.
         #[test]
         fn the_count_gives_the_union(
-            (parts, order) in proptest::collection::vec((0..60i32, 1..20i32), 0..8)
+            (parts, order) in collection::vec((0..60i32, 1..20i32), 0..8)
                 .prop_flat_map(|parts| { let n = 2 * parts.len(); (Just(parts), Just((0..n).collect::<Vec<_>>()).prop_shuffle()) })
         ) {
             let all: Vec<_> = parts.iter()
@@ -273,7 +273,7 @@ mod tests {
         /// Few crossings are counted as many are, whether they add up or not.
         #[test]
         fn few_are_counted_as_any(
-            all in proptest::collection::vec((0..40i32, 0..3i32, prop::sample::select(vec![-2_i8, -1, 0, 1, 1, 2])), 0..30),
+            all in collection::vec((0..40i32, 0..3i32, prop::sample::select(vec![-2_i8, -1, 0, 1, 1, 2])), 0..30),
             same in 0.0..0.5, close in any::<bool>()
         ) {
             let mut sum = 0;

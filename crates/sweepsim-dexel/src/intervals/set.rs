@@ -153,11 +153,11 @@ impl<'a, E> IntoIterator for &'a IntervalSet<E> {
 mod tests {
     use super::*;
     use crate::End;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// Any intervals with ends on whole numbers: unsorted, overlapping, empty, reversed.
     fn pieces() -> impl Strategy<Value = Vec<[i32; 2]>> {
-        proptest::collection::vec([0..60i32, 0..60i32], 0..14)
+        collection::vec([0..60i32, 0..60i32], 0..14)
     }
 
     /// The ends of what complements are taken in.

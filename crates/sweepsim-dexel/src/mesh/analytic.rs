@@ -182,7 +182,7 @@ impl DistanceTo {
 mod tests {
     use super::*;
     use crate::TriangleSoup;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn unit(v: [f64; 3]) -> [f64; 3] {
         v.map(|c| c / length(v))

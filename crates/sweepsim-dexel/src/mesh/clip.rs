@@ -90,7 +90,7 @@ impl TriangleSoup {
 mod tests {
     use super::*;
     use crate::vector::{cross, sub};
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn area([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
         cross(sub(*b, *a), sub(*c, *a)).map(|c| 0.5 * c)
@@ -105,7 +105,7 @@ mod tests {
         /// Nothing is lost or turned over, and everything is on its side.
         #[test]
         fn parts_make_up_the_whole(
-            triangles in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-4i8..5)), 1..8),
+            triangles in collection::vec(prop::array::uniform3(prop::array::uniform3(-4i8..5)), 1..8),
             corner in prop::array::uniform3(-3i8..3), size in prop::array::uniform3(1i8..5),
         ) {
             // On a grid of halves, so that corners and edges often lie in sides.

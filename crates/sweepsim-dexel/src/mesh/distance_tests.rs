@@ -1,6 +1,6 @@
 use super::*;
 use crate::{Stock, TriDexels};
-use proptest::prelude::*;
+use sweepsim_props::*;
 
 fn block(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
     let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });

@@ -178,7 +178,7 @@ impl TriangleSoup {
 mod tests {
     use super::super::distance::DistanceTo;
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// Against the distance of points along the line.

@@ -2,7 +2,7 @@ use super::*;
 use crate::grid::{Frame, Grid};
 use crate::mesh::{MeshError, TriangleSoup};
 use crate::stock::Stock;
-use proptest::prelude::*;
+use sweepsim_props::*;
 
 fn soup(mesh: &Mesh) -> TriangleSoup {
     TriangleSoup {
@@ -226,8 +226,8 @@ proptest! {
     /// Whatever the lines contain, the surface is closed and has about the volume of the dexels.
     #[test]
     fn any_dexels_have_a_closed_surface(
-        lines in proptest::collection::vec(
-            (proptest::collection::btree_set(0..200u32, 0..8), proptest::collection::vec(normal(), 8)), 25),
+        lines in collection::vec(
+            (collection::btree_set(0..200u32, 0..8), collection::vec(normal(), 8)), 25),
         scale in prop_oneof![Just(0.01), Just(0.1)],
     ) {
         let mut dexels = Dexels::empty(grid(5));
@@ -312,8 +312,8 @@ proptest! {
     /// The nearest end of all sets, wherever a place is: near an end of one set, of another one, or of none.
     #[test]
     fn sources_are_those_of_the_nearest_ends(
-        spans in prop::collection::vec(prop::collection::vec((0.0..6.0_f64, 0.1..4.0_f64, any::<bool>()), 36), 3),
-        places in prop::collection::vec(prop::array::uniform3(-3.0..9.0_f64), 40),
+        spans in collection::vec(collection::vec((0.0..6.0_f64, 0.1..4.0_f64, any::<bool>()), 36), 3),
+        places in collection::vec(prop::array::uniform3(-3.0..9.0_f64), 40),
     ) {
         let set = |axis: usize| {
             let grid = Grid::new([0.0; 2], [6.0; 2], [6; 2]).unwrap().in_frame(Frame::cyclic(axis));

@@ -1,6 +1,6 @@
 use crate::{Mesh, Stock, TriDexels, TriangleSoup};
-use proptest::prelude::*;
 use std::collections::BTreeMap;
+use sweepsim_props::*;
 
 /// Every edge has two triangles, in opposite directions; the triangles around a vertex are one fan.
 fn check_manifold(mesh: &Mesh) {
@@ -270,7 +270,7 @@ fn part() -> impl Strategy<Value = Stock> {
 
 /// A few parts, united, subtracted, intersected.
 fn csg() -> impl Strategy<Value = Stock> {
-    (part(), proptest::collection::vec((part(), 0..4), 0..5)).prop_map(|(first, more)| {
+    (part(), collection::vec((part(), 0..4), 0..5)).prop_map(|(first, more)| {
         more.into_iter().fold(first, |whole, (part, kind)| match kind {
             0 | 1 => Stock::Union(vec![whole, part]),
             2 => Stock::Difference(Box::new(whole), vec![part]),

@@ -1,7 +1,7 @@
 //! Deviations along normals, of parts in all their forms, against what is known of them in advance.
 
-use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Stock, Surface, SurfaceDeviations, TriDexels, TriangleSoup};
+use sweepsim_props::*;
 
 const TOLERANCE: f64 = 1e-6;
 /// The distance of the lines.

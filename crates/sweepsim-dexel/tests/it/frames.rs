@@ -1,7 +1,7 @@
 //! Dexels in different frames see the same world.
 
-use proptest::prelude::*;
 use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup, compare_with_mesh};
+use sweepsim_props::*;
 
 type Inside = fn([f64; 3]) -> f64;
 
@@ -51,7 +51,7 @@ fn octahedron(r: f64) -> TriangleSoup {
 }
 
 fn frame() -> impl Strategy<Value = Frame> {
-    let vector = || proptest::array::uniform3(-1.0..1.0);
+    let vector = || prop::array::uniform3(-1.0..1.0);
     let turned = (vector(), vector(), vector()).prop_filter_map("no frame", |(o, z, x)| Frame::new(o, z, x).ok());
     prop_oneof![4 => turned, 1 => (0..3usize).prop_map(Frame::cyclic)]
 }

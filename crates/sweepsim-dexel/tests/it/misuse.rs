@@ -1,10 +1,10 @@
 //! Misuse of public constructors and operations: errors, never a panic, and nothing that is not sorted and disjoint.
 
-use proptest::prelude::*;
 use sweepsim_dexel::{
     Crossing, Dexels, DexelsBuilder, DistanceTo, End, Frame, Grid, Interval, IntervalError, IntervalSet, Mesh,
     Operation, Source, Stock, TriDexels, TriangleSoup, compare, compare_with_mesh, cover,
 };
+use sweepsim_props::*;
 
 /// Any number, the odd ones often.
 fn number() -> impl Strategy<Value = f64> {
@@ -50,7 +50,7 @@ fn end() -> impl Strategy<Value = End> {
 fn intervals() -> impl Strategy<Value = Vec<Interval>> {
     let interval = (end(), end()).prop_map(|(lower, upper)| Interval { lower, upper });
     let up = (-3.0..3.0_f64, 0.0..1.0_f64).prop_map(|(z, length)| Interval::between(z, z + length));
-    proptest::collection::vec(prop_oneof![1 => interval, 3 => up], 0..4)
+    collection::vec(prop_oneof![1 => interval, 3 => up], 0..4)
 }
 
 fn sorted(dexels: &Dexels) -> bool {
@@ -69,7 +69,7 @@ fn in_order(intervals: &[Interval]) -> bool {
 }
 
 fn stock() -> impl Strategy<Value = Stock> {
-    let triangles = proptest::collection::vec([vector(), vector(), vector()], 0..5);
+    let triangles = collection::vec([vector(), vector(), vector()], 0..5);
     let leaf = prop_oneof![
         (vector(), vector()).prop_map(|(min, max)| Stock::Block { min, max }),
         (vector(), number()).prop_map(|(centre, radius)| Stock::Ball { centre, radius }),
@@ -82,7 +82,7 @@ fn stock() -> impl Strategy<Value = Stock> {
         triangles.prop_map(|triangles| Stock::Mesh(TriangleSoup { triangles })),
     ];
     leaf.prop_recursive(2, 6, 3, |inner| {
-        let list = proptest::collection::vec(inner.clone(), 0..3);
+        let list = collection::vec(inner.clone(), 0..3);
         prop_oneof![
             list.clone().prop_map(Stock::Union),
             (inner, list.clone()).prop_map(|(first, others)| Stock::Difference(Box::new(first), others)),
@@ -120,7 +120,7 @@ proptest! {
     }
 
     #[test]
-    fn sets_take_nothing_but_intervals(pieces in proptest::collection::vec([number(), number()], 0..5), at in number(), tolerance in number()) {
+    fn sets_take_nothing_but_intervals(pieces in collection::vec([number(), number()], 0..5), at in number(), tolerance in number()) {
         let good = pieces.iter().all(|[a, b]| a < b);
         let list = pieces.iter().map(|[lower, upper]| Interval { lower: *lower, upper: *upper });
         match IntervalSet::from_intervals(list) {
@@ -137,7 +137,7 @@ proptest! {
     }
 
     #[test]
-    fn builders_take_nothing_but_intervals(lines in proptest::collection::vec((0..5_usize, intervals()), 0..5)) {
+    fn builders_take_nothing_but_intervals(lines in collection::vec((0..5_usize, intervals()), 0..5)) {
         let grid = Grid::new([0.0; 2], [2.0, 3.0], [2, 3]).unwrap();
         let mut builder = DexelsBuilder::new(grid);
         for (skip, line) in &lines {
@@ -156,7 +156,7 @@ proptest! {
 
     #[test]
     fn crossings_of_anything_are_counted_or_refused(
-        heights in proptest::collection::vec((number(), -2..3_i8), 0..6), same in number(), line in 0..20_u32,
+        heights in collection::vec((number(), -2..3_i8), 0..6), same in number(), line in 0..20_u32,
     ) {
         let crossings: Vec<Crossing> = heights
             .iter()
@@ -211,8 +211,8 @@ proptest! {
     #[test]
     fn meshes_of_anything_are_used_or_refused(
         // Six are enough for all triangles.
-        vertices in prop_oneof![proptest::collection::vec(vector(), 0..5), proptest::collection::vec(vector(), 6)],
-        triangles in proptest::collection::vec(any::<[u8; 3]>(), 0..5),
+        vertices in prop_oneof![collection::vec(vector(), 0..5), collection::vec(vector(), 6)],
+        triangles in collection::vec(any::<[u8; 3]>(), 0..5),
         cosine in number(), point in vector(), reach in number(), spacing in 0.1..9.0_f64,
     ) {
         let mut mesh = Mesh::default();

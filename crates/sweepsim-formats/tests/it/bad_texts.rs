@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use proptest::prelude::*;
 use sweepsim_formats::Job;
+use sweepsim_props::*;
 
 use crate::support::{GOOD, message};
 

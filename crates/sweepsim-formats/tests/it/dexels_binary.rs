@@ -1,8 +1,8 @@
 //! The binary form of dexels: what is written is read, and nothing else.
 
-use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Frame, Grid, Interval, Source};
 use sweepsim_formats::{read_dexels_binary, read_dexels_npz, write_dexels_binary, write_dexels_npz};
+use sweepsim_props::*;
 
 /// Any dexels on a few hundred lines.
 fn dexels() -> impl Strategy<Value = Dexels> {
@@ -14,11 +14,11 @@ fn dexels() -> impl Strategy<Value = Dexels> {
         0..9_u32,
         0.0..=1.0_f32,
     );
-    let line = prop_oneof![3 => Just(Vec::new()), 2 => proptest::collection::vec(piece, 1..5)];
+    let line = prop_oneof![3 => Just(Vec::new()), 2 => collection::vec(piece, 1..5)];
     let vector = || [-9.0..9.0_f64, -9.0..9.0, -9.0..9.0];
     let frame = (vector(), vector(), vector()).prop_map(|(o, z, x)| Frame::new(o, z, x).unwrap_or_default());
     let frame = prop_oneof![Just(Frame::WORLD), frame];
-    (1..30_usize, proptest::collection::vec(line, 1..20), frame).prop_map(|(columns, lines, frame)| {
+    (1..30_usize, collection::vec(line, 1..20), frame).prop_map(|(columns, lines, frame)| {
         let rows = lines.len();
         let grid = Grid::new([-1.0, 0.5], [1.0, 2.5], [columns, rows])
             .unwrap()
@@ -53,7 +53,7 @@ fn written(dexels: &Dexels) -> Vec<u8> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
     #[test]
-    fn what_is_written_is_read(dexels in dexels(), tail in proptest::collection::vec(any::<u8>(), 0..4)) {
+    fn what_is_written_is_read(dexels in dexels(), tail in collection::vec(any::<u8>(), 0..4)) {
         let mut file = written(&dexels);
         let length = file.len();
         file.extend(&tail);
@@ -87,7 +87,7 @@ proptest! {
         first in prop_oneof![Just(0), Just(u64::MAX), any::<u64>()],
         lines in prop_oneof![0..5000_u32, any::<u32>()],
         length in prop_oneof![Just(None), any::<u32>().prop_map(Some)],
-        payload in proptest::collection::vec(prop_oneof![0..4_u8, any::<u8>()], 0..300),
+        payload in collection::vec(prop_oneof![0..4_u8, any::<u8>()], 0..300),
         small in any::<bool>(),
     ) {
         let cells = if small { [64, 64] } else { cells };

@@ -1,6 +1,5 @@
 //! Formats of other programs: what is written is read; damage is an error, or changes nothing that is read.
 
-use proptest::prelude::*;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Frame, Grid, Interval, Mesh, Source, Stock, TriDexels};
 use sweepsim_formats::{
@@ -8,6 +7,7 @@ use sweepsim_formats::{
     read_ply, read_vtp, write_3mf, write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_glb,
     write_mesh_file, write_ply, write_stl, write_vtp,
 };
+use sweepsim_props::*;
 
 fn mesh() -> Mesh {
     let ball = Stock::Ball {
@@ -193,7 +193,7 @@ proptest! {
     #[test]
     fn damage_of_bare_formats_is_no_panic(
         cut in 0.0..1.0_f64,
-        flips in proptest::collection::vec((0.0..1.0_f64, 0..8_u32), 1..4),
+        flips in collection::vec((0.0..1.0_f64, 0..8_u32), 1..4),
         digits in 0..300_usize,
     ) {
         for (file, read) in bare() {
@@ -247,7 +247,7 @@ proptest! {
     }
 
     #[test]
-    fn nonsense_is_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+    fn nonsense_is_an_error(bytes in collection::vec(any::<u8>(), 0..200)) {
         for magic in [&b"PK\x03\x04"[..], b"glTF\x02\0\0\0", b""] {
             let file = [magic, &bytes].concat();
             prop_assert!(read_dexels_npz(&file).is_err() && read_3mf(&file).is_err() && read_glb(&file).is_err());

@@ -1,11 +1,11 @@
 //! Every format reads back what was written, and no reader panics on anything.
 
-use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Grid, Interval, Mesh};
 use sweepsim_formats::{
     DexelRow, Fixture, Job, Report, ReportedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply, write_3mf,
     write_dexels_csv, write_glb, write_ply, write_stl, write_vtp,
 };
+use sweepsim_props::*;
 
 fn length() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -19,8 +19,8 @@ fn length() -> impl Strategy<Value = f64> {
 
 /// Dexels with 0 to 3 intervals on slopes and flats.
 fn dexels() -> impl Strategy<Value = Dexels> {
-    let column = prop::collection::vec((1e-3..3.0, 1e-3..3.0), 0..4);
-    let columns = prop::collection::vec((column, 1usize..4), 1..60);
+    let column = collection::vec((1e-3..3.0, 1e-3..3.0), 0..4);
+    let columns = collection::vec((column, 1usize..4), 1..60);
     (columns, 1usize..7, -50.0..50.0).prop_map(|(columns, ny, z)| {
         let flat: Vec<_> = columns
             .iter()
@@ -50,7 +50,7 @@ fn ends(dexels: &Dexels) -> Vec<Vec<f64>> {
 
 /// Texts that look like the format, with things wrong in them.
 fn like(words: &'static [&'static str]) -> impl Strategy<Value = String> {
-    prop::collection::vec(
+    collection::vec(
         (prop::sample::select(words), "[ \n,]|", prop::option::of(-1e3..1e3)),
         0..60,
     )
@@ -91,7 +91,7 @@ proptest! {
     }
 
     #[test]
-    fn ply(vertices in prop::collection::vec(([length(), length(), length()], [-1f32..1.0, -1f32..1.0, -1f32..1.0]), 3..20), corners in prop::collection::vec([0usize..20, 0usize..20, 0usize..20], 0..20)) {
+    fn ply(vertices in collection::vec(([length(), length(), length()], [-1f32..1.0, -1f32..1.0, -1f32..1.0]), 3..20), corners in collection::vec([0usize..20, 0usize..20, 0usize..20], 0..20)) {
         let count = vertices.len();
         let mesh = Mesh {
             vertices: vertices.iter().map(|v| v.0).collect(),
@@ -108,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn stl(triangles in prop::collection::vec([[-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [0f32..1.0, 0f32..1.0, 0f32..1.0]], 1..9)) {
+    fn stl(triangles in collection::vec([[-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [0f32..1.0, 0f32..1.0, 0f32..1.0]], 1..9)) {
         let triangles: Vec<[[f64; 3]; 3]> = triangles.iter().map(|t| t.map(|p| p.map(f64::from))).collect();
         let mut bytes = Vec::new();
         write_stl(&triangles, &mut bytes).unwrap();
@@ -126,7 +126,7 @@ proptest! {
     }
 
     #[test]
-    fn no_reader_panics_on_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+    fn no_reader_panics_on_bytes(bytes in collection::vec(any::<u8>(), 0..300)) {
         let text = String::from_utf8_lossy(&bytes);
         let _ = parse_stl(&bytes);
         let _ = parse_stl(&[b"solid ", &bytes[..]].concat());
@@ -243,7 +243,7 @@ proptest! {
     /// Rows in any order, reversed, overlapping or not finite: dexels with exactly these intervals, or an error.
     #[test]
     fn rows_become_dexels_or_an_error(
-        rows in prop::collection::vec((0_usize..4, 0_usize..3, any_number(), any_number()), 0..6),
+        rows in collection::vec((0_usize..4, 0_usize..3, any_number(), any_number()), 0..6),
     ) {
         let rows: Vec<DexelRow> = rows.into_iter().map(|(i, j, z0, z1)| DexelRow { i, j, z0, z1 }).collect();
         let grid = Grid::new([0.0; 2], [1.0; 2], [3, 3]).unwrap();
@@ -257,9 +257,9 @@ proptest! {
     /// Meshes with missing vertices, lists of wrong lengths, and numbers that are not finite: a file or an error.
     #[test]
     fn meshes_are_written_or_refused(
-        vertices in prop::collection::vec([any_number(), any_number(), any_number()], 0..6),
+        vertices in collection::vec([any_number(), any_number(), any_number()], 0..6),
         normals in 0_usize..6,
-        triangles in prop::collection::vec([0_u32..7, 0_u32..7, 0_u32..7], 0..5),
+        triangles in collection::vec([0_u32..7, 0_u32..7, 0_u32..7], 0..5),
     ) {
         let whole = triangles.iter().flatten().all(|v| (*v as usize) < vertices.len());
         let mesh = Mesh { normals: vec![[f32::NAN; 3]; normals], cut: vec![true; normals], vertices, triangles };

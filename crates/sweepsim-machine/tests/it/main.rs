@@ -3,9 +3,9 @@
 mod matter;
 
 use nalgebra::{Matrix3, Unit, Vector3};
-use proptest::prelude::*;
 use std::cell::Cell;
 use sweepsim_machine::{Body, Contact, Convex, Course, JOINTS, Joint, Limits, Linkage, Outcome, Values, contacts};
+use sweepsim_props::*;
 
 /// Straight moves of all joints from corner to corner.
 #[derive(Debug, Clone)]
@@ -134,10 +134,9 @@ fn scene() -> impl Strategy<Value = Scene> {
         let corner = prop::array::uniform6(-1.0..1.0_f64).prop_map(move |values| -> Values {
             std::array::from_fn(|k| if k < joints { 60.0 * values[k] } else { 0.0 })
         });
-        let corners = prop::collection::vec(corner, 2..40).prop_map(Corners);
+        let corners = collection::vec(corner, 2..40).prop_map(Corners);
         let ends = (0..=joints, 0..=joints).prop_flat_map(|(i, j)| (boxed(i), boxed(j)));
-        (prop::collection::vec(joint(), joints), ends, corners)
-            .prop_map(|(joints, (a, b), corners)| (joints, a, b, corners))
+        (collection::vec(joint(), joints), ends, corners).prop_map(|(joints, (a, b), corners)| (joints, a, b, corners))
     })
 }
 
@@ -184,12 +183,12 @@ fn holds(linkage: &Linkage, [a, b]: [&Boxed; 2], corners: &Corners, outcome: &Ou
 /// Counts what was found, so that each kind of scene is there often.
 fn random_scenes(cases: u32, outcome: impl Fn(&Linkage, &Scene) -> Outcome) -> [u32; 4] {
     let counts = Cell::new([0; 4]);
-    let mut runner = proptest::test_runner::TestRunner::new_with_rng(
+    let mut runner = test_runner::TestRunner::new_with_rng(
         ProptestConfig {
             cases,
             ..ProptestConfig::default()
         },
-        proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
+        test_runner::TestRng::deterministic_rng(test_runner::RngAlgorithm::ChaCha),
     );
     let run = runner.run(&scene(), |scene| {
         let linkage = Linkage::new(scene.0.clone()).expect("few joints");

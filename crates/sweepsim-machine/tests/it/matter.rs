@@ -1,8 +1,8 @@
 //! A block that a hole is cut into, and a box that comes down on it, judged by corners of boxes.
 
 use super::Corners;
-use proptest::prelude::*;
 use sweepsim_machine::{Body, Convex, Joint, Limits, Linkage, Matter, Outcome, meets};
+use sweepsim_props::*;
 
 type Cuboid = [[f64; 3]; 2];
 

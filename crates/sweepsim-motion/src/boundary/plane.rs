@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use crate::boundary::normals::normals;
     use crate::{Patch, PatchError};
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// How a plane lies to the axes.
     #[derive(Clone, Copy, Debug)]
@@ -203,9 +203,9 @@ mod tests {
         /// as `F_u × F_v`, with sides shrunk to a point or without.
         #[test]
         fn flat_patches_have_the_normals_of_their_planes(
-            degrees in [1_usize..5, 1_usize..5], pole in proptest::option::of(any::<bool>()), plane in planes(), centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
-            bumps in proptest::collection::vec(-0.02..0.02, 50), weights in proptest::collection::vec(0.8..1.25, 25), rational in any::<bool>(), swapped in any::<bool>(),
-            places in proptest::collection::vec([0.05..0.95, 0.05..0.95], 4),
+            degrees in [1_usize..5, 1_usize..5], pole in prop::option::of(any::<bool>()), plane in planes(), centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
+            bumps in collection::vec(-0.02..0.02, 50), weights in collection::vec(0.8..1.25, 25), rational in any::<bool>(), swapped in any::<bool>(),
+            places in collection::vec([0.05..0.95, 0.05..0.95], 4),
         ) {
             let weights = if rational { weights } else { vec![1.5; 25] };
             let (mut position, mut weight) = patch((degrees, pole), (plane, centre), (&bumps, &weights), 0.0);
@@ -249,7 +249,7 @@ mod tests {
         /// A point that is off by more than rounding makes no plane.
         #[test]
         fn others_are_left_alone(
-            degrees in [2_usize..5, 2_usize..5], plane in planes(), weights in proptest::collection::vec(0.8..1.25, 25), digits in 1.0..11.0_f64,
+            degrees in [2_usize..5, 2_usize..5], plane in planes(), weights in collection::vec(0.8..1.25, 25), digits in 1.0..11.0_f64,
         ) {
             let lift = 10_f64.powf(-digits);
             let (position, weight) = patch((degrees, None), (plane, [3.0, -2.0, 5.0]), (&[0.0; 50], &weights), lift);

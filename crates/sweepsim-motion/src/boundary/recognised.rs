@@ -176,7 +176,7 @@ mod tests {
     use super::*;
     use crate::boundary::normals::normals;
     use nalgebra::Vector3;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// A piece of a surface of revolution: an arc of `sweep` from `start`, and homogeneous points of the meridian.
     /// Swapped, circles are in `v`.
@@ -217,7 +217,7 @@ mod tests {
         #[test]
         fn closed_and_general_normals_agree(
             start in -3.0..3.0, sweep in prop_oneof![0.2..1.6, -1.6..-0.2],
-            points in proptest::collection::vec((0.5..9.0, -9.0..9.0, 0.5..2.0), 2..5),
+            points in collection::vec((0.5..9.0, -9.0..9.0, 0.5..2.0), 2..5),
             rational in any::<bool>(), swapped in any::<bool>(), place in [0.0..1.0, 0.0..1.0],
         ) {
             let weight = |w: f64| if rational { w } else { 1.0 };

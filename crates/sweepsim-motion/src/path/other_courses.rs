@@ -113,13 +113,13 @@ impl OtherCourses {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// What is taken out is what was put in, to the last bit, however the moves are asked for.
         #[test]
         fn courses_are_kept(
-            corners in prop::collection::vec((0_usize..4, prop::collection::vec(prop::array::uniform3(-1e3..1e3_f64), 1..5)), 0..100),
+            corners in collection::vec((0_usize..4, collection::vec(prop::array::uniform3(-1e3..1e3_f64), 1..5)), 0..100),
             cut in 0..200_usize,
         ) {
             let (mut kept, mut all, mut number) = (OtherCourses::default(), Vec::new(), 0);

@@ -1,8 +1,8 @@
 //! The boundary of built-in tools: on the surface that was asked for, normals that are normals, closed, right side out.
 
 use nalgebra::Vector3;
-use proptest::prelude::*;
 use sweepsim_motion::{NormalField, Patch, Pose, Profile, ProfileSegment, Segment, Tool, Turn};
+use sweepsim_props::*;
 use sweepsim_spline::{Bernstein, KnotVector, RationalSpline};
 
 /// Value and derivatives (by u, by v) of a bivariate Bernstein form, from the definition.
@@ -227,7 +227,7 @@ proptest! {
     /// side where the next row shares it, too.
     #[test]
     fn level_points_have_level_normals(
-        axis in 0..3_usize, level in prop_oneof![Just(9.6), -50.0..50.0], flat in any::<bool>(), weights in prop::collection::vec(0.6..1.6, 36), bumps in prop::collection::vec(-0.2..0.2, 72),
+        axis in 0..3_usize, level in prop_oneof![Just(9.6), -50.0..50.0], flat in any::<bool>(), weights in collection::vec(0.6..1.6, 36), bumps in collection::vec(-0.2..0.2, 72),
     ) {
         let knots = |step: f64| KnotVector::new(3, [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 3.0].map(|t| step * t).to_vec()).unwrap();
         let points: Vec<f64> = (0..36)

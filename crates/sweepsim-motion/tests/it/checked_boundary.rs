@@ -1,8 +1,8 @@
 //! What cannot be built: patches, edges, normals and pieces of revolution that are not what they claim to be.
 
 use nalgebra::Matrix3;
-use proptest::prelude::*;
 use sweepsim_motion::{Edge, Lens, Lollipop, NormalField, Oval, Patch, PatchError, Revolved, Tool};
+use sweepsim_props::*;
 use sweepsim_spline::Bernstein;
 
 fn tools() -> Vec<Tool> {
@@ -182,18 +182,14 @@ fn number() -> impl Strategy<Value = f64> {
 /// Forms of any number of variables and degrees, finite or too large to be so after a sum.
 fn form() -> impl Strategy<Value = Bernstein> {
     let finite = prop_oneof![6 => -10.0..10.0, 1 => Just(0.0), 1 => Just(1e308), 1 => Just(-1e308), 1 => Just(5e-324)];
-    (
-        proptest::collection::vec(0..4_usize, 0..4),
-        proptest::collection::vec(finite, 64),
-    )
-        .prop_map(|(degrees, numbers)| {
-            let mut index = 0;
-            Bernstein::from_fn(&degrees, |_| {
-                index += 1;
-                numbers[index % 64]
-            })
-            .expect("few coefficients, all finite")
+    (collection::vec(0..4_usize, 0..4), collection::vec(finite, 64)).prop_map(|(degrees, numbers)| {
+        let mut index = 0;
+        Bernstein::from_fn(&degrees, |_| {
+            index += 1;
+            numbers[index % 64]
         })
+        .expect("few coefficients, all finite")
+    })
 }
 
 proptest! {
@@ -201,7 +197,7 @@ proptest! {
 
     /// Whatever forms are put together: an error or a value that holds together, never a panic.
     #[test]
-    fn any_forms(forms in proptest::collection::vec(form(), 10)) {
+    fn any_forms(forms in collection::vec(form(), 10)) {
         let three = |start: usize| [0, 1, 2].map(|k| forms[start + k].clone());
         let field = NormalField::new(three(3), three(6));
         let _ = Patch::new(three(0), forms[9].clone());
@@ -216,7 +212,7 @@ proptest! {
     }
 
     #[test]
-    fn any_numbers_of_revolution(numbers in proptest::collection::vec(number(), 27), framed: bool, turn in proptest::collection::vec(number(), 12)) {
+    fn any_numbers_of_revolution(numbers in collection::vec(number(), 27), framed in any::<bool>(), turn in collection::vec(number(), 12)) {
         let triple = |start: usize| [numbers[start], numbers[start + 1], numbers[start + 2]];
         let frame = framed.then(|| (Matrix3::from_column_slice(&turn[..9]), [turn[9], turn[10], turn[11]]));
         let made = Revolved::new([0, 3, 6].map(triple), [9, 12, 15, 18, 21, 24].map(triple), frame);

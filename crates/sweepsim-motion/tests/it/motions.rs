@@ -1,11 +1,11 @@
 //! Moves against their laws: dense sampling within the stated deviation; rates against differences; errors.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::{
     ArcError, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion, TipArc,
     TipCourse, Turning,
 };
+use sweepsim_props::*;
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
 pub const REACH: f64 = 40.0;

@@ -1,7 +1,7 @@
 //! Offsets of profiles against distances to dense points.
 
-use proptest::prelude::*;
 use sweepsim_motion::{Profile, ProfileSegment, Turn};
+use sweepsim_props::*;
 
 /// Points of a profile of lines and arcs, closely spaced.
 fn dense(profile: &Profile) -> Vec<[f64; 2]> {
@@ -84,10 +84,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn offsets_hold_what_is_near_and_nothing_else(
-        steps in prop::collection::vec((1.0..9.0, 0.5..9.0), 1..5),
+        steps in collection::vec((1.0..9.0, 0.5..9.0), 1..5),
         rounded in any::<bool>(),
         distance in 0.05..4.0,
-        probes in prop::collection::vec((0.0..16.0, -5.0..40.0), 60),
+        probes in collection::vec((0.0..16.0, -5.0..40.0), 60),
     ) {
         // Equal radii would be no step.
         let steps: Vec<(f64, f64)> = steps.iter().enumerate().map(|(n, (r, h))| (r + 0.013 * n as f64, *h)).collect();

@@ -1,7 +1,7 @@
 //! Packed rows and paths hold what was put in, to the last bit.
 
-use proptest::prelude::*;
 use sweepsim_motion::{Law, Move, PackedRows, Path, PathBuilder, Pose, RotaryTable, TipArc, Turning};
+use sweepsim_props::*;
 
 /// Numbers as programs have them, and any others.
 fn column() -> impl Strategy<Value = Vec<f64>> {
@@ -33,9 +33,9 @@ fn column() -> impl Strategy<Value = Vec<f64>> {
         (any::<i32>(), -1000..1000).prop_map(|(from, step)| (0..ROWS as i32)
             .map(|k| f64::from(from) + f64::from(step * k))
             .collect()),
-        prop::collection::vec(any::<u64>().prop_map(f64::from_bits), ROWS),
-        prop::collection::vec(-1.0..1.0, ROWS),
-        prop::collection::vec(
+        collection::vec(any::<u64>().prop_map(f64::from_bits), ROWS),
+        collection::vec(-1.0..1.0, ROWS),
+        collection::vec(
             prop_oneof![
                 Just(0.0),
                 Just(-0.0),

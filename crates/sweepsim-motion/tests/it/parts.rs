@@ -1,8 +1,8 @@
 //! Parts of segments: the same motion, between two of its times.
 
 use nalgebra::{Matrix3, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, Segment, SegmentEnd, TipArc, TipCourse, Turning};
+use sweepsim_props::*;
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).unwrap()

@@ -1,8 +1,8 @@
 //! Paths in another frame: every point of the tool is where the turn and the shift put it.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::{Law, Move, Path, PathError, Pose, RotaryTable, TipArc};
+use sweepsim_props::*;
 
 const REACH: f64 = 40.0;
 
@@ -35,7 +35,7 @@ fn path() -> impl Strategy<Value = Path> {
     let axis = (-1.2..1.2, -3.0..3.0)
         .prop_map(|(tilt, round): (f64, f64)| [tilt.sin() * round.cos(), tilt.sin() * round.sin(), tilt.cos()]);
     let pose = (prop::array::uniform3(-20.0..20.0), axis);
-    (prop::collection::vec(pose, 2..4), 0u8..5).prop_map(|(poses, law)| {
+    (collection::vec(pose, 2..4), 0u8..5).prop_map(|(poses, law)| {
         let poses: Vec<Pose> = poses
             .iter()
             .map(|(tip, axis)| Pose::new(*tip, *axis).unwrap())

@@ -2,8 +2,8 @@
 
 use crate::motions::{REACH, axis, tip};
 use nalgebra::{Rotation3, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::{Move, Path, Pose, TipArc};
+use sweepsim_props::*;
 
 proptest! {
     /// A tool that turns with an arc is one rigid body with it: the centre stays at one point of the tool but for the rise, and orientation and tip have the same weights, to the bit.

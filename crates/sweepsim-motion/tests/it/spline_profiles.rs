@@ -1,8 +1,8 @@
 //! Splines in profiles: patches on the rotated curve with its normals, edges at its corners, and bad ones refused.
 
 use nalgebra::Vector3;
-use proptest::prelude::*;
 use sweepsim_motion::{Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
+use sweepsim_props::*;
 use sweepsim_spline::{KnotVector, RationalSpline};
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
@@ -38,8 +38,8 @@ proptest! {
     /// Every patch of the spline lies on it, turned; its normals are at right angles to both slopes and its moments are `F × N`.
     #[test]
     fn patches_lie_on_the_curve_and_have_its_normals(
-        shifts in prop::collection::vec(-0.2..0.2_f64, 8),
-        weights in prop::option::of(prop::collection::vec(0.4..2.0_f64, 6)),
+        shifts in collection::vec(-0.2..0.2_f64, 8),
+        weights in prop::option::of(collection::vec(0.4..2.0_f64, 6)),
         degree in 1..6_usize,
         [u, v] in [0.001..0.999_f64, 0.02..0.98_f64],
     ) {
@@ -91,9 +91,9 @@ proptest! {
     #[test]
     fn bad_splines_are_errors_and_never_panics(
         degree in 0..9_usize,
-        points in prop::collection::vec([-1.0..4.0_f64, -1.0..6.0_f64], 0..12),
-        knots in prop::option::of(prop::collection::vec(prop_oneof![Just(0.0), Just(1.0), -1.0..2.0_f64, Just(f64::NAN)], 0..20)),
-        weights in prop::option::of(prop::collection::vec(prop_oneof![Just(1.0), -0.1..3.0_f64, Just(f64::INFINITY)], 0..12)),
+        points in collection::vec([-1.0..4.0_f64, -1.0..6.0_f64], 0..12),
+        knots in prop::option::of(collection::vec(prop_oneof![Just(0.0), Just(1.0), -1.0..2.0_f64, Just(f64::NAN)], 0..20)),
+        weights in prop::option::of(collection::vec(prop_oneof![Just(1.0), -0.1..3.0_f64, Just(f64::INFINITY)], 0..12)),
         joined in any::<bool>(),
     ) {
         let mut points = points;

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 
-use proptest::prelude::*;
 use sweepsim_nc::{AxisLaw, CORNER_DEVIATION, Controller, Machine, Program, ReadOptions, gcode, siemens};
+use sweepsim_props::*;
 
 pub fn options(machine: &str) -> ReadOptions {
     let mut options = ReadOptions::default();
@@ -322,32 +322,30 @@ fn chain() -> impl Strategy<Value = Chain> {
     let direction = [-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64];
     let step = (direction, -2.0..2.0_f64, 0..4_u8, 0.0..2.5_f64);
     let accelerations = [1.0..3.5_f64, 1.0..3.5_f64, 1.0..3.5_f64];
-    (proptest::collection::vec(step, 1..8), accelerations, -3.0..0.0_f64).prop_map(
-        |(steps, accelerations, deviation)| {
-            let (mut points, mut speeds, mut last) = (vec![[0.0; 3]], Vec::new(), [1.0, 0.0, 0.0]);
-            for (direction, size, turn, speed) in steps {
-                // Straight on, a small turn, or any.
-                last = match turn {
-                    0 => last,
-                    1 => std::array::from_fn(|k| last[k] + 0.1 * direction[k]),
-                    _ => direction,
-                };
-                let length = 10.0_f64.powf(size) / dot(last, last).sqrt().max(0.1);
-                let here: [f64; 3] = points[points.len() - 1];
-                // As written: what the reader sees.
-                points.push(std::array::from_fn(|k| {
-                    ((here[k] + length * last[k]) * 1e6).round() / 1e6
-                }));
-                speeds.push((10.0_f64.powf(speed) * 6e7).round() / 6e7);
-            }
-            Chain {
-                points,
-                speeds,
-                accelerations: accelerations.map(|a| 10.0_f64.powf(a)),
-                deviation: 10.0_f64.powf(deviation),
-            }
-        },
-    )
+    (collection::vec(step, 1..8), accelerations, -3.0..0.0_f64).prop_map(|(steps, accelerations, deviation)| {
+        let (mut points, mut speeds, mut last) = (vec![[0.0; 3]], Vec::new(), [1.0, 0.0, 0.0]);
+        for (direction, size, turn, speed) in steps {
+            // Straight on, a small turn, or any.
+            last = match turn {
+                0 => last,
+                1 => std::array::from_fn(|k| last[k] + 0.1 * direction[k]),
+                _ => direction,
+            };
+            let length = 10.0_f64.powf(size) / dot(last, last).sqrt().max(0.1);
+            let here: [f64; 3] = points[points.len() - 1];
+            // As written: what the reader sees.
+            points.push(std::array::from_fn(|k| {
+                ((here[k] + length * last[k]) * 1e6).round() / 1e6
+            }));
+            speeds.push((10.0_f64.powf(speed) * 6e7).round() / 6e7);
+        }
+        Chain {
+            points,
+            speeds,
+            accelerations: accelerations.map(|a| 10.0_f64.powf(a)),
+            deviation: 10.0_f64.powf(deviation),
+        }
+    })
 }
 
 proptest! {

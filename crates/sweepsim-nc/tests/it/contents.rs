@@ -1,7 +1,7 @@
 //! The content of a file decides its format where the extension does not.
 
-use proptest::prelude::*;
 use sweepsim_nc::{Program, ReadOptions, read_file};
+use sweepsim_props::*;
 
 /// Reads `text` from a file of that name: the program, or the error after the folder's name.
 fn read(name: &str, text: &[u8]) -> Result<Program, String> {
@@ -141,19 +141,19 @@ fn words() -> impl Strategy<Value = String> {
         "é",
         "\0",
     ];
-    prop::collection::vec(prop_oneof![8 => prop::sample::select(words.to_vec()).prop_map(str::to_owned), 1 => any::<char>().prop_map(String::from)], 0..60)
+    collection::vec(prop_oneof![8 => prop::sample::select(words.to_vec()).prop_map(str::to_owned), 1 => any::<char>().prop_map(String::from)], 0..60)
         .prop_map(|parts| parts.concat())
 }
 
 proptest! {
     #[test]
-    fn garbage_never_panics(text in words(), name in prop::sample::select(NAMES.to_vec()), moved: bool) {
+    fn garbage_never_panics(text in words(), name in prop::sample::select(NAMES.to_vec()), moved in any::<bool>()) {
         let text = if moved { format!("G0 X0 Y0 Z0\n{text}") } else { text };
         let _ = read(name, text.as_bytes());
     }
 
     #[test]
-    fn bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), name in prop::sample::select(NAMES.to_vec())) {
+    fn bytes_never_panic(bytes in collection::vec(any::<u8>(), 0..200), name in prop::sample::select(NAMES.to_vec())) {
         let _ = read(name, &bytes);
     }
 }

@@ -2,10 +2,10 @@
 
 use std::cell::Cell;
 
-use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Program, ReadOptions, heidenhain};
+use sweepsim_props::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use sweepsim_props::*;
 
 const START: &str = "TOOL CALL 1 Z S900\nL X+0 Y+0 Z-2 R0 FMAX\n";
 
@@ -234,7 +234,7 @@ fn what_does_not_determine_a_contour_is_an_error() {
 
 /// A random smooth contour: lines and arcs in turn, each with its length, or its radius and angle.
 fn smooth() -> impl Strategy<Value = Vec<(f64, f64, f64)>> {
-    prop::collection::vec(
+    collection::vec(
         (4.0..40.0_f64, prop_oneof![3.0..20.0_f64, -20.0..-3.0], 0.2..2.5_f64),
         2..6,
     )

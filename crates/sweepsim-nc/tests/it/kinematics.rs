@@ -1,11 +1,11 @@
 //! Machines: positions of their axes and poses of the tool, both ways, against formulas and matrices written down independently.
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::Pose;
 use sweepsim_nc::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, ReachError, RotaryAxis,
 };
+use sweepsim_props::*;
 
 fn kinematics(name: &str) -> Kinematics {
     Machine::named(name).unwrap().kinematics.unwrap().as_ref().clone()

@@ -1,9 +1,9 @@
 //! Limits of axes inside of moves, and rapids of axes that need not arrive together, against dense sampling by the forward chain.
 
 use nalgebra::{Matrix3, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{AxisFault, Kinematics, Machine, Position, Program, Rapid, ReadOptions, check, gcode};
+use sweepsim_props::*;
 
 /// X, Y, Z at which the tip is at a point, at given angles: the forward chain is affine in them.
 fn solve(machine: &Kinematics, tip: Vector3<f64>, abc: [f64; 3], length: f64) -> [f64; 3] {
@@ -77,7 +77,7 @@ proptest! {
     #[test]
     fn limits_are_watched_along_moves(
         name in prop::sample::select(vec!["trunnion-ac", "trunnion-bc", "head-bc", "head-ac", "head-b-table-c", "nutating-head-bc", "nutating-table-bc"]),
-        points in prop::collection::vec((prop::array::uniform3(-40.0..40.0_f64), -50.0..50.0_f64, -170.0..170.0_f64), 2..4),
+        points in collection::vec((prop::array::uniform3(-40.0..40.0_f64), -50.0..50.0_f64, -170.0..170.0_f64), 2..4),
         arc in (-30.0..30.0_f64, 5.0..30.0_f64, any::<bool>(), 0.0..3.0_f64),
         shares in prop::array::uniform2(prop_oneof![Just(-0.01), 0.0..0.2_f64]),
         tip_control in any::<bool>(),

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Rotation3, Vector3};
-use proptest::prelude::*;
 use sweepsim_motion::{Pose, Turning};
 use sweepsim_nc::{
     AxisFault, AxisLaw, Kinematics, Machine, Position, Program, ProgramPose, ReadOptions, check, gcode, siemens, write,
 };
+use sweepsim_props::*;
 
 fn machine(name: &str) -> (Machine, Kinematics) {
     let machine = Machine::named(name).unwrap();
@@ -56,7 +56,7 @@ fn runs() -> impl Strategy<Value = (usize, Vec<Axes>, f64)> {
     );
     (
         0..Machine::names().len(),
-        prop::collection::vec(position, 2..6),
+        collection::vec(position, 2..6),
         0.0..150.0_f64,
     )
 }
@@ -121,7 +121,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_machine_keeps_the_poses((index, positions, length) in runs(), tip_control: bool, rotary_law: bool) {
+    fn every_machine_keeps_the_poses((index, positions, length) in runs(), tip_control in any::<bool>(), rotary_law in any::<bool>()) {
         keeps_the_poses(Machine::names()[index], &positions, length, tip_control, rotary_law);
     }
 

@@ -1,8 +1,8 @@
 //! Programs written and read again.
 
-use proptest::prelude::*;
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Program, ReadOptions, apt, gcode, table, write};
+use sweepsim_props::*;
 
 pub(crate) fn options() -> ReadOptions {
     let mut options = ReadOptions::default();
@@ -59,7 +59,7 @@ pub(crate) enum Step {
 
 pub(crate) fn steps() -> impl Strategy<Value = Vec<Step>> {
     let place = prop::array::uniform3(-100.0..100.0_f64);
-    prop::collection::vec(
+    collection::vec(
         prop_oneof![
             (place.clone(), any::<bool>()).prop_map(|(place, rapid)| Step::Line(place, rapid)),
             (place, prop::array::uniform2(-0.5..0.5_f64)).prop_map(|(place, tilt)| Step::Tilted(place, tilt)),

@@ -1,8 +1,8 @@
 //! Tables are read back as written, and nothing that a reader gets makes it panic.
 
-use proptest::prelude::*;
 use sweepsim_motion::Pose;
 use sweepsim_nc::{Machine, ProgramPose, ReadOptions, gcode, read_file, table};
+use sweepsim_props::*;
 
 fn length() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -29,12 +29,12 @@ fn like(words: &'static [&'static str]) -> impl Strategy<Value = String> {
         "\\PC{0,3}",
         "[-0-9.eE+]{0,6}"
     ];
-    prop::collection::vec(word, 0..60).prop_map(|words| words.concat())
+    collection::vec(word, 0..60).prop_map(|words| words.concat())
 }
 
 proptest! {
     #[test]
-    fn tables_are_read_back(mut poses in prop::collection::vec(pose(), 1..12)) {
+    fn tables_are_read_back(mut poses in collection::vec(pose(), 1..12)) {
         poses.dedup_by(|b, a| a.pose == b.pose && a.tool == b.tool);
         let mut bytes = Vec::new();
         table::write(&poses, &mut bytes).unwrap();
@@ -49,7 +49,7 @@ proptest! {
     }
 
     #[test]
-    fn programs_are_read_back(points in prop::collection::vec([length(), length(), length()], 1..20)) {
+    fn programs_are_read_back(points in collection::vec([length(), length(), length()], 1..20)) {
         let text: String = points.iter().map(|[x, y, z]| format!("G1 X{x} Y{y} Z{z}\n")).collect();
         let read = gcode::read(&text, &ReadOptions::default()).unwrap();
         let mut expected = points.clone();
@@ -59,7 +59,7 @@ proptest! {
     }
 
     #[test]
-    fn no_table_panics(text in like(&["x,y,z,i,j,k", ",rapid,feed,tool", "\n", ",", "0", "1", "\"", "NaN", "inf", " "]), unit: f64) {
+    fn no_table_panics(text in like(&["x,y,z,i,j,k", ",rapid,feed,tool", "\n", ",", "0", "1", "\"", "NaN", "inf", " "]), unit in any::<f64>()) {
         let _ = table::read(&text, unit);
         let _ = table::read(&format!("x,y,z,i,j,k\n{text}"), 25.4);
     }
@@ -67,8 +67,8 @@ proptest! {
     #[test]
     fn no_program_panics(
         text in like(&["G0", "G1", "G2", "G3 ", "G10 L2", "G92", "G43.4", "M6", "T1", "X1", "Y", "Z0", "I1", "R2", "A90", "C1e", "\n", "\n", "#", "(", "/"]),
-        tip_control: bool,
-        exact_arcs: bool,
+        tip_control in any::<bool>(),
+        exact_arcs in any::<bool>(),
         arc_tolerance in prop_oneof![Just(1e-3), Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(1e-300)],
     ) {
         let mut options = ReadOptions::default();
@@ -80,7 +80,7 @@ proptest! {
     }
 
     #[test]
-    fn no_file_panics(bytes in prop::collection::vec(any::<u8>(), 0..200), extension in prop::sample::select(&["csv", "nc", "apt", "x", ""][..])) {
+    fn no_file_panics(bytes in collection::vec(any::<u8>(), 0..200), extension in prop::sample::select(&["csv", "nc", "apt", "x", ""][..])) {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(format!("file.{extension}"));
         std::fs::write(&file, bytes).unwrap();

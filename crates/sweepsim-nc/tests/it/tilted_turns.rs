@@ -1,9 +1,9 @@
 //! The move that turns the tool into a tilted plane: the linear axes of a known machine stand still.
 
 use nalgebra::Vector3;
-use proptest::prelude::*;
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Machine, NcError, Position, Program, ReadOptions, check, gcode, heidenhain, siemens, write};
+use sweepsim_props::*;
 
 fn options(name: &str) -> ReadOptions {
     let mut options = ReadOptions::default();

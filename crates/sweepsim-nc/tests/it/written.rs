@@ -1,11 +1,11 @@
 //! Programs written as G-code of each control, and read again.
 
-use proptest::prelude::*;
 use sweepsim_motion::{Move, Pose, TipArc, TipCourse};
 use sweepsim_nc::{
     Controller, Coolant, CutterKind, Event, EventKind, FeedMode, Machine, Program, ProgramPose, Spindle,
     StockDescription, apt, gcode, heidenhain, siemens, write,
 };
+use sweepsim_props::*;
 
 use crate::round_trips::{Step, options, steps, text};
 
@@ -121,8 +121,8 @@ proptest! {
     /// Arcs and helices in all planes, of several turns, from G-code in inches or millimetres.
     #[test]
     fn arcs_come_back(
-        blocks in prop::collection::vec((0..3_usize, 0.5..20.0_f64, -3.1..3.1_f64, 0.01..6.27_f64, -2.0..2.0_f64, 1..4_u32, any::<bool>()), 1..8),
-        inch: bool,
+        blocks in collection::vec((0..3_usize, 0.5..20.0_f64, -3.1..3.1_f64, 0.01..6.27_f64, -2.0..2.0_f64, 1..4_u32, any::<bool>()), 1..8),
+        inch in any::<bool>(),
         index in 0..2_usize,
     ) {
         let mut text = String::from(if inch { "G20\n" } else { "G21\n" });

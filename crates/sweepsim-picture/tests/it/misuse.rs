@@ -1,8 +1,8 @@
 //! No mesh, view or section makes the renderer panic, and no image has the wrong number of bytes.
 
-use proptest::prelude::*;
 use sweepsim_dexel::Mesh;
 use sweepsim_picture::{Axis, CuttingPlane, Drawing, Image, ImageError, View, legend};
+use sweepsim_props::*;
 
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -17,10 +17,10 @@ fn point() -> impl Strategy<Value = [f64; 3]> {
 
 prop_compose! {
     fn mesh()(
-        vertices in prop::collection::vec(point(), 0..8),
-        normals in prop::collection::vec(point(), 0..9),
-        cut in prop::collection::vec(any::<bool>(), 0..9),
-        triangles in prop::collection::vec([0_u32..9, 0_u32..9, 0_u32..9], 0..8),
+        vertices in collection::vec(point(), 0..8),
+        normals in collection::vec(point(), 0..9),
+        cut in collection::vec(any::<bool>(), 0..9),
+        triangles in collection::vec([0_u32..9, 0_u32..9, 0_u32..9], 0..8),
     ) -> Mesh {
         Mesh { vertices, normals: normals.iter().map(|n| n.map(|c| c as f32)).collect(), cut, triangles }
     }
@@ -32,12 +32,12 @@ proptest! {
     #[test]
     fn anything_can_be_drawn(
         mesh in mesh(),
-        values in prop::collection::vec(number(), 0..9),
+        values in collection::vec(number(), 0..9),
         range in number(),
         at in number(),
         angles in [number(), number(), number()],
         size in [0_usize..40, 0_usize..40],
-        orthographic: bool,
+        orthographic in any::<bool>(),
     ) {
         let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
         let mut view = View::default();

@@ -4,12 +4,12 @@ use crate::certificates::check_distance;
 use crate::scenes::{SceneOf, scene, target};
 use crate::walls::LIFT;
 use nalgebra::Vector3;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
 use sweepsim_proof::{Closest, Cutter, Limits, Target, closest, cover};
+use sweepsim_props::test_runner::{Config, TestRunner};
+use sweepsim_props::*;
 
 const RADIUS: f64 = 2.0;
 const HEIGHT: f64 = 12.0;

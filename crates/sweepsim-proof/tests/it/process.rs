@@ -1,12 +1,12 @@
 //! Shanks and rapids beside a stock while it is cut.
 
 use nalgebra::Vector3;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::Stock;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
 use sweepsim_proof::{Convex, Cutter, Movers, Room, Touched, Work, cover, touched};
+use sweepsim_props::test_runner::{Config, RngSeed, TestRunner};
+use sweepsim_props::*;
 
 const ROOM: Room = Room {
     distance: -1e-3,
@@ -302,7 +302,7 @@ fn random_scenes(cases: u32, least: u32) {
         rng_seed: RngSeed::Fixed(0),
         ..Config::with_cases(cases)
     });
-    let way = proptest::collection::vec([-9.0..9.0_f64, -5.0..5.0_f64], 2..4);
+    let way = collection::vec([-9.0..9.0_f64, -5.0..5.0_f64], 2..4);
     let scenes = (
         0..3_u8,
         prop_oneof![Just(1.0), 0.5..1.2_f64],

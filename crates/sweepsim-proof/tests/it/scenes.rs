@@ -3,8 +3,6 @@
 use crate::certificates::{certified, checked};
 use crate::walls::LIFT;
 use nalgebra::Vector3;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 use sweepsim_dexel::TriangleSoup;
@@ -13,6 +11,8 @@ use sweepsim_motion::{
     Turn,
 };
 use sweepsim_proof::{Limits, Target};
+use sweepsim_props::test_runner::{Config, TestRunner};
+use sweepsim_props::*;
 
 /// A sphere of triangles.
 fn sphere(centre: [f64; 3], radius: f64, rings: usize) -> TriangleSoup {

@@ -4,12 +4,12 @@ use crate::certificates::{certified, check_height};
 use crate::scenes::{radius_at, target, tool};
 use crate::walls::{LIFT, slot};
 use nalgebra::Vector3;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
 use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
 use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
+use sweepsim_props::test_runner::{Config, TestRunner};
+use sweepsim_props::*;
 
 const LIMITS: Limits = Limits::new(0.02, 0.002, 500_000);
 

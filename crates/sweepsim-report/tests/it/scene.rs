@@ -1,7 +1,7 @@
 //! Round trips of the embedded data, and its size.
 
 use crate::decoder::Data;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_report::{
     Area, Course, DexelLayer, KeyFrame, LayerEnd, Page, ProgramText, Scene, Surface, Track, TrackPoint,
 };
@@ -30,7 +30,7 @@ fn end() -> impl Strategy<Value = LayerEnd> {
 /// Up to three intervals on each line, from the lowest up.
 fn lines(count: usize) -> impl Strategy<Value = Lines> {
     let interval = (0.05_f64..3.0, 0.05_f64..9.0, end(), end());
-    let line = prop::collection::vec(interval, 0..4).prop_map(|parts| {
+    let line = collection::vec(interval, 0..4).prop_map(|parts| {
         let mut z = -7.0;
         let place = |(gap, length, lower, upper): (f64, f64, LayerEnd, LayerEnd)| {
             let (low, high) = (z + gap, z + gap + length);
@@ -39,7 +39,7 @@ fn lines(count: usize) -> impl Strategy<Value = Lines> {
         };
         parts.into_iter().map(place).collect()
     });
-    prop::collection::vec(line, count)
+    collection::vec(line, count)
 }
 
 /// A unit vector from the two numbers of its octahedron.
@@ -94,7 +94,7 @@ proptest! {
 
     /// The workpiece at each moment comes back, however many moments had to be joined.
     #[test]
-    fn the_course_comes_back(start in lines(12), changes in prop::collection::vec(prop::collection::btree_map(0_u32..12, lines(1), 1..5), 1..9), few in any::<bool>()) {
+    fn the_course_comes_back(start in lines(12), changes in collection::vec(collection::btree_map(0_u32..12, lines(1), 1..5), 1..9), few in any::<bool>()) {
         let area = Area { min: [0.0; 2], max: [4.0, 3.0], cells: [4, 3] };
         let heights = |line: &[[LayerEnd; 2]]| line.iter().map(|ends| ends.map(|end| end.z)).collect::<Vec<_>>();
         let measured = |line: &[[LayerEnd; 2]]| line.iter().map(|ends| (ends.map(|end| end.z), ends.map(|end| end.deviation))).collect::<Vec<_>>();

@@ -263,7 +263,7 @@ impl<const N: usize> Contraction<N> {
 mod tests {
     use super::*;
     use nalgebra::{Matrix3, Vector3};
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn preconditioned(rest: Matrix3<f64>, weights: Vector3<f64>, radius: f64) -> Linear<3> {
         Linear {
@@ -305,7 +305,7 @@ mod tests {
     proptest! {
         /// The bound of the spectral radius is never below it, and often below the largest row sum; where it is below 1, the contraction encloses `R(I − R)⁻¹`.
         #[test]
-        fn spectral_radii_are_bounded(entries in proptest::collection::vec(0.0..1.0, 9), scale in 0.01..0.8, turn in [-3.0..3.0, -3.0..3.0]) {
+        fn spectral_radii_are_bounded(entries in collection::vec(0.0..1.0, 9), scale in 0.01..0.8, turn in [-3.0..3.0, -3.0..3.0]) {
             let stretch = [1.0, f64::exp(turn[0]), f64::exp(turn[1])];
             let rest = Matrix3::from_fn(|i, j| scale * entries[3 * i + j] * stretch[i] / stretch[j]);
             let (weights, radius) = spectral(&rest);
@@ -333,8 +333,8 @@ mod tests {
         /// The strips leave every target that the mean value test leaves, one by one, and few others.
         #[test]
         fn strips_are_the_mean_value_test(
-            entries in proptest::collection::vec(-1.0..1.0, 9), skew in -8.0..8.0, is_flat in any::<bool>(), centre in [-50.0..50.0, -50.0..50.0, -1.0..1.0],
-            places in proptest::collection::vec([-1.0..1.0, -1.0..1.0], 40),
+            entries in collection::vec(-1.0..1.0, 9), skew in -8.0..8.0, is_flat in any::<bool>(), centre in [-50.0..50.0, -50.0..50.0, -1.0..1.0],
+            places in collection::vec([-1.0..1.0, -1.0..1.0], 40),
         ) {
             let mut inverse = Matrix3::from_fn(|i, j| entries[3 * i + j]);
             // Nearly singular maps, and directions that do not depend on the second value.

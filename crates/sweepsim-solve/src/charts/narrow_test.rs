@@ -4,9 +4,9 @@ use super::narrow::{Narrowed, narrowed};
 use super::{ChartMap, ChartOptions, ChartSolver, ChartTarget, Preimage, Sample, Sink, Targets, UnresolvedTarget};
 use crate::{CUT, CancelOnly, Enclosure};
 use nalgebra::{Matrix3, Vector3};
-use proptest::prelude::*;
-use proptest::strategy::ValueTree;
-use proptest::test_runner::TestRunner;
+use sweepsim_props::strategy::ValueTree;
+use sweepsim_props::test_runner::TestRunner;
+use sweepsim_props::*;
 
 type Box3 = [Enclosure; 3];
 
@@ -172,7 +172,7 @@ fn matrix(entries: &[f64]) -> Matrix3<f64> {
 }
 
 fn entries() -> impl Strategy<Value = Vec<f64>> {
-    proptest::collection::vec(-1.0..1.0, 9)
+    collection::vec(-1.0..1.0, 9)
 }
 
 /// A box of this size that holds a place.
@@ -203,7 +203,7 @@ proptest! {
     /// The part to which a box is narrowed holds the preimages of all targets, however singular the map is there.
     #[test]
     fn parts_hold_all_preimages(
-        outer in entries(), inner in entries(), bent in proptest::collection::vec(-1.0..1.0, 27), rank in 0..3_usize, flat in 0..14_i32,
+        outer in entries(), inner in entries(), bent in collection::vec(-1.0..1.0, 27), rank in 0..3_usize, flat in 0..14_i32,
         origin in [0.0..1.0, 0.0..1.0, 0.0..1.0], shares in [0.0..1.0, 0.0..1.0, 0.0..1.0], size in 0..24_i32, slim in [0..12_i32, 0..12_i32, 0..12_i32],
         other in [0.0..1.0, 0.0..1.0, 0.0..1.0], near in 0..40_i32,
     ) {

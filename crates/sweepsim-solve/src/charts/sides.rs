@@ -164,13 +164,13 @@ fn below(factor: f64, limit: f64) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::{ChartMap, ChartOptions, ChartSolver, ChartTarget, Preimage, Sample, Sink, Targets, UnresolvedTarget};
-    use proptest::prelude::*;
+    use sweepsim_props::*;
     use sweepsim_spline::Bernstein;
 
     proptest! {
         #[test]
         fn functions_are_within_their_errors(
-            degrees in [0_usize..4, 0_usize..4], numbers in proptest::collection::vec(-3.0..3.0, 16), at in [0.0..=1.0, 0.0..=1.0],
+            degrees in [0_usize..4, 0_usize..4], numbers in collection::vec(-3.0..3.0, 16), at in [0.0..=1.0, 0.0..=1.0],
         ) {
             let count = (degrees[0] + 1) * (degrees[1] + 1);
             let form = Bernstein::new(&degrees, numbers[..count].to_vec()).unwrap();

@@ -1,7 +1,7 @@
 //! Charts, and preimages on the faces between them, which rounding puts on either side.
 
 use crate::support::targets::{Answer, List};
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_solve::{ChartMap, ChartOptions, ChartSolver, Enclosure, Sample};
 
 type Box2 = [Enclosure; 2];
@@ -100,8 +100,8 @@ proptest! {
     /// However near to faces of boxes, in one direction or both, each preimage is found once.
     #[test]
     fn preimages_at_faces_are_found_once(
-        turns in [prop::collection::vec(any::<bool>(), 0..4), prop::collection::vec(any::<bool>(), 0..4)],
-        off in [-4e-13..4e-13_f64, -4e-13..4e-13], at_faces in 1..4_usize, elsewhere in [0.01..0.99_f64, 0.01..0.99], others in prop::collection::vec([0.0..1.0_f64, 0.0..1.0], 0..30), seed in any::<u64>(),
+        turns in [collection::vec(any::<bool>(), 0..4), collection::vec(any::<bool>(), 0..4)],
+        off in [-4e-13..4e-13_f64, -4e-13..4e-13], at_faces in 1..4_usize, elsewhere in [0.01..0.99_f64, 0.01..0.99], others in collection::vec([0.0..1.0_f64, 0.0..1.0], 0..30), seed in any::<u64>(),
     ) {
         let place = [0, 1].map(|k| if at_faces & (k + 1) != 0 { face(&turns[k]) + off[k] } else { elsewhere[k] });
         let places: Vec<[f64; 2]> = std::iter::once(place).chain(others).collect();

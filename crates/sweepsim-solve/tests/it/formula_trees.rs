@@ -1,7 +1,7 @@
 //! Formulas of any shape mean what an evaluation of the same tree says.
 
 use crate::formulas::parse;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_solve::PointSolver;
 
 /// A formula in `x` and `y` with its text, and its own evaluation.

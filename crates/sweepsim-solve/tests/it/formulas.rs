@@ -1,6 +1,6 @@
 //! Formulas and equations as text, against an evaluation that shares no code with them.
 
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_solve::{
     Bernstein, CurveSolver, Enclosure, Formula, FormulaProblem, PointSolver, Points, SurfaceSolver, System, SystemError,
 };
@@ -260,7 +260,7 @@ proptest! {
     /// Text of any kind is a system or an error whose place lies in it.
     #[test]
     fn malformed_text_is_an_error_with_a_place(
-        words in prop::collection::vec(prop::sample::select(vec![
+        words in collection::vec(prop::sample::select(vec![
             "x", "y", "z", "sin", "(", ")", "(", ")", "+", "-", "*", "/", "^", "**", "=", "1", "2.5e", ".", "1e400", "e3", "é", "\n", " ", "€", "pi", "1e-5", "_a", "\u{0}",
         ]), 0..24),
     ) {

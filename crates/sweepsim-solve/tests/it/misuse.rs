@@ -2,7 +2,7 @@
 
 use crate::monitors::Fold;
 use crate::support::targets::{Answer, List};
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_solve::{
     Bundle, BundleSolver, ChartOptions, ChartSolver, CurveSolver, Enclosure, Equation, Expression, Pieces, PointSolver,
     SolveOptions, SurfaceSolver, System,
@@ -27,7 +27,7 @@ fn number() -> impl Strategy<Value = f64> {
 
 /// A form of few variables, with any coefficients and any error.
 fn form() -> impl Strategy<Value = Bernstein> {
-    (proptest::collection::vec(0..4_usize, 1..4), number(), number()).prop_map(|(degrees, odd, error)| {
+    (collection::vec(0..4_usize, 1..4), number(), number()).prop_map(|(degrees, odd, error)| {
         let mut k = 0.0;
         let count = degrees.iter().map(|d| d + 1).product::<usize>();
         let mut coefficients: Vec<f64> = std::iter::repeat_with(|| {
@@ -71,9 +71,9 @@ proptest! {
 
     #[test]
     fn systems_of_anything_are_solved_or_refused(
-        forms in proptest::collection::vec(form(), 0..4),
-        domain in proptest::collection::vec(enclosure(), 0..5),
-        region in proptest::collection::vec(enclosure(), 0..5),
+        forms in collection::vec(form(), 0..4),
+        domain in collection::vec(enclosure(), 0..5),
+        region in collection::vec(enclosure(), 0..5),
         remainders in (number(), number()),
         smallest in number(),
         tolerance in number(),
@@ -94,7 +94,7 @@ proptest! {
 
     #[test]
     fn expressions_of_anything_are_solved_or_refused(
-        a in form(), b in form(), c in number(), domain in proptest::collection::vec(enclosure(), 1..4),
+        a in form(), b in form(), c in number(), domain in collection::vec(enclosure(), 1..4),
     ) {
         let (a, b) = (Expression::from(a), Expression::from(b));
         let whole = (a.clone() + b.clone() * c) / (b - a * c);
@@ -105,7 +105,7 @@ proptest! {
 
     #[test]
     fn charts_with_any_limits_end(
-        smallest in number(), accept in number(), boxes in 0..60_u64, targets in proptest::collection::vec([number(), number()], 0..5),
+        smallest in number(), accept in number(), boxes in 0..60_u64, targets in collection::vec([number(), number()], 0..5),
     ) {
         let options = ChartOptions::default().boxes(boxes).smallest(smallest).accept(accept);
         let targets = List(targets);
@@ -120,8 +120,8 @@ proptest! {
 
     #[test]
     fn bundles_of_anything_are_made_or_refused(
-        numerators in proptest::collection::vec(form(), 0..4),
-        zeros in proptest::collection::vec(form(), 0..4),
+        numerators in collection::vec(form(), 0..4),
+        zeros in collection::vec(form(), 0..4),
         weight in form(),
         (first, second) in (form(), form()),
     ) {

@@ -1,8 +1,8 @@
 //! Charts at a pole, where all values of one variable are the same point, and targets as near to it as rounding.
 
 use crate::support::targets::{Answer, List};
-use proptest::prelude::*;
 use std::f64::consts::PI;
+use sweepsim_props::*;
 use sweepsim_solve::{Cause, ChartMap, ChartOptions, ChartSolver, Enclosure, Sample};
 
 /// A paraboloid of curvature 2 in polar coordinates that moves along x at a speed of 8 and rises by `rise`: `(8t + v cos θ, v sin θ, 2v cos θ − rise)` with

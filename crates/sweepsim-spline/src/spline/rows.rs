@@ -310,12 +310,12 @@ fn missing_knots(from: &[f64], to: &[f64]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// Of refinement, extraction, elevation and the way back.
         #[test]
-        fn equal_coefficients_stay_equal(value in -50.0..50.0, gaps in prop::collection::vec(0.1..3.0, 5..9), degree in 1..5_usize, clamped in any::<bool>()) {
+        fn equal_coefficients_stay_equal(value in -50.0..50.0, gaps in collection::vec(0.1..3.0, 5..9), degree in 1..5_usize, clamped in any::<bool>()) {
             let inner = gaps.iter().scan(0.0, |at: &mut f64, gap| { *at += gap; Some(*at) });
             let mut knots: Vec<f64> = inner.collect();
             if clamped {

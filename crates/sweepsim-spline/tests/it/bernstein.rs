@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{Exact, Random, assert_is, exact, within};
 use dashu_ratio::RBig;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{Bernstein, MAX_DEGREE};
 
 /// Forms of at most this many coefficients, so that the exact side stays quick.
@@ -18,7 +18,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(96), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn sums_differences_products(seed: u64) {
+    fn sums_differences_products(seed in any::<u64>()) {
         let mut random = Random(seed);
         let (a, b) = (random.form(MOST), random.form(60));
         let (ea, eb) = (Exact::from(&a), Exact::from(&b));
@@ -34,7 +34,7 @@ proptest! {
     }
 
     #[test]
-    fn chains_keep_their_bound(seed: u64) {
+    fn chains_keep_their_bound(seed in any::<u64>()) {
         // Errors go in as well as come out: (a b − c)² ∂ₓ(a + c)
         let mut random = Random(seed);
         let (a, b, c) = (random.form(40), random.form(40), random.form(40));
@@ -51,7 +51,7 @@ proptest! {
     }
 
     #[test]
-    fn calculus(seed: u64) {
+    fn calculus(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(MOST);
         let ea = Exact::from(&a);
@@ -72,7 +72,7 @@ proptest! {
     }
 
     #[test]
-    fn elevation_and_reduction(seed: u64) {
+    fn elevation_and_reduction(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(120);
         let ea = Exact::from(&a);
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn subdivision(seed: u64) {
+    fn subdivision(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(MOST);
         let ea = Exact::from(&a);
@@ -146,7 +146,7 @@ proptest! {
     }
 
     #[test]
-    fn evaluation(seed: u64) {
+    fn evaluation(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(MOST);
         let ea = Exact::from(&a);
@@ -187,7 +187,7 @@ proptest! {
     }
 
     #[test]
-    fn composition(seed: u64) {
+    fn composition(seed in any::<u64>()) {
         let mut random = Random(seed);
         let degrees: Vec<usize> = (0..1 + random.below(3)).map(|_| random.below(4)).collect();
         let f = random.form_of(&degrees);
@@ -229,7 +229,7 @@ proptest! {
     }
 
     #[test]
-    fn more_variables(seed: u64) {
+    fn more_variables(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(200);
         let n = a.variables();
@@ -247,7 +247,7 @@ proptest! {
     }
 
     #[test]
-    fn enclosures(seed: u64) {
+    fn enclosures(seed in any::<u64>()) {
         let mut random = Random(seed);
         let a = random.form(60).mul(&random.form(30));
         let (lo, hi) = a.enclosure();
@@ -260,7 +260,7 @@ proptest! {
     }
 
     #[test]
-    fn leibniz(seed: u64) {
+    fn leibniz(seed in any::<u64>()) {
         let mut random = Random(seed);
         let (a, b) = (random.form(60), random.form(60));
         let axis = random.below(a.variables());

@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{Exact, Random, exact};
 use dashu_ratio::RBig;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{Bernstein, BernsteinMap, Cone};
 
 /// Whether the exact vector is in the cone: `|v|²|a|² − (v·a)² ≤ τ² (v·a)²` and `v·a ≥ 0`.
@@ -21,7 +21,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(96), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn ranges(seed: u64) {
+    fn ranges(seed in any::<u64>()) {
         let mut random = Random(seed);
         let f = random.form(120);
         let e = Exact::from(&f);
@@ -38,7 +38,7 @@ proptest! {
     }
 
     #[test]
-    fn zero_intervals(seed: u64) {
+    fn zero_intervals(seed in any::<u64>()) {
         let mut random = Random(seed);
         let f = random.form(60);
         // Made to vanish at a known place.
@@ -55,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn linear_bounds(seed: u64) {
+    fn linear_bounds(seed in any::<u64>()) {
         let mut random = Random(seed);
         let f = random.form(120);
         let bound = f.linear_bound();
@@ -72,7 +72,7 @@ proptest! {
     }
 
     #[test]
-    fn cones(seed: u64) {
+    fn cones(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(3);
         let wide = [1e-14, 1e-6, 0.1, 1.0][random.below(4)];
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn gradient_and_normal_cones(seed: u64) {
+    fn gradient_and_normal_cones(seed in any::<u64>()) {
         let mut random = Random(seed);
         // Nearly linear, so that there is a cone.
         let noise = random.form_of(&[2, 3]);

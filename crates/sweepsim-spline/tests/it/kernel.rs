@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{Exact, Random, exact, within};
 use dashu_ratio::RBig;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{BernsteinError, kernel};
 
 /// `n` numbers of a few bits, so that sums of them are exact, and one that is not.
@@ -28,7 +28,7 @@ proptest! {
     /// Splitting along any variable of a tensor, at any length of lines (those known to the compiler and longer ones),
     /// and both kept parts.
     #[test]
-    fn parts_are_the_form_on_its_parts(seed: u64, p in 0..9_usize, q in 0..7_usize, copies in 1..4_usize, along_second: bool) {
+    fn parts_are_the_form_on_its_parts(seed in any::<u64>(), p in 0..9_usize, q in 0..7_usize, copies in 1..4_usize, along_second in any::<bool>()) {
         let mut random = Random(seed);
         let size = (p + 1) * (q + 1);
         let c = numbers(&mut random, copies * size);
@@ -59,7 +59,7 @@ proptest! {
 
     /// Rectangles of any place, with degrees that have a fast path, that have tables, and that are too high for them.
     #[test]
-    fn restriction_is_the_form_on_the_rectangle(seed: u64, p in prop_oneof![0..8_usize, Just(33)], q in prop_oneof![0..8_usize, Just(12), Just(32)]) {
+    fn restriction_is_the_form_on_the_rectangle(seed in any::<u64>(), p in prop_oneof![0..8_usize, Just(33)], q in prop_oneof![0..8_usize, Just(12), Just(32)]) {
         let mut random = Random(seed);
         let size = (p + 1) * (q + 1);
         let c = numbers(&mut random, 2 * size);
@@ -80,7 +80,7 @@ proptest! {
 
     /// Values and slopes of the basis, inside and outside the domain.
     #[test]
-    fn basis_and_slopes(seed: u64, degree in 0..20_usize) {
+    fn basis_and_slopes(seed in any::<u64>(), degree in 0..20_usize) {
         let mut random = Random(seed);
         let x = random.between(-0.5, 1.5);
         let (mut only, mut values, mut slopes) = ([f64::NAN; 20], [f64::NAN; 20], [f64::NAN; 20]);
@@ -102,7 +102,7 @@ proptest! {
     /// Products, elevation, derivatives, Wronskians and values of lines; pairs of numbers stand for coefficients that
     /// are not numbers.
     #[test]
-    fn lines(seed: u64, p in 0..9_usize, q in 0..9_usize, by in 0..5_usize) {
+    fn lines(seed in any::<u64>(), p in 0..9_usize, q in 0..9_usize, by in 0..5_usize) {
         let mut random = Random(seed);
         let (a, b) = (numbers(&mut random, p + 1), numbers(&mut random, q + 1));
         let x = random.below(257) as f64 / 256.0;

@@ -4,8 +4,8 @@ use crate::common;
 
 use common::{Random, exact, within};
 use dashu_ratio::RBig;
-use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use sweepsim_props::*;
 use sweepsim_spline::{BSpline, Bernstein, KnotVector, RationalBernstein, RationalSpline, SplineError};
 
 fn spline(random: &mut Random, variables: usize, dimension: usize) -> RationalSpline {
@@ -32,7 +32,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn splines(seed: u64) {
+    fn splines(seed in any::<u64>()) {
         let mut random = Random(seed);
         let (n, m) = (1 + random.below(2), 3);
         let f = spline(&mut random, n, m);
@@ -104,7 +104,7 @@ proptest! {
     }
 
     #[test]
-    fn forms(seed: u64) {
+    fn forms(seed in any::<u64>()) {
         let mut random = Random(seed);
         let mut map = || {
             let mut form = |lo: f64| {

@@ -5,14 +5,14 @@ use crate::common;
 use common::splines::{assert_is, knots, point, spline, value};
 use common::{Exact, Random, exact, within};
 use dashu_ratio::RBig;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{BSpline, BernsteinMap, KnotVector, SplineError};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(96), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn evaluation(seed: u64) {
+    fn evaluation(seed in any::<u64>()) {
         let mut random = Random(seed);
         let (n, m) = (1 + random.below(3), 1 + random.below(3));
         let f = spline(&mut random, n, 5, m);
@@ -52,7 +52,7 @@ proptest! {
     }
 
     #[test]
-    fn knots_in_and_out(seed: u64) {
+    fn knots_in_and_out(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(3);
         let f = spline(&mut random, n, 5, 2);
@@ -74,7 +74,7 @@ proptest! {
     }
 
     #[test]
-    fn degrees_up_and_down(seed: u64) {
+    fn degrees_up_and_down(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(2);
         let f = spline(&mut random, n, 4, 1);
@@ -91,7 +91,7 @@ proptest! {
     }
 
     #[test]
-    fn pieces_and_back(seed: u64) {
+    fn pieces_and_back(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(3);
         let f = spline(&mut random, n, 4, 2);
@@ -124,7 +124,7 @@ proptest! {
     }
 
     #[test]
-    fn algebra(seed: u64) {
+    fn algebra(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(2);
         let m = 1 + random.below(3);
@@ -166,7 +166,7 @@ proptest! {
     }
 
     #[test]
-    fn calculus(seed: u64) {
+    fn calculus(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(2);
         let f = spline(&mut random, n, 4, 1);
@@ -209,7 +209,7 @@ proptest! {
     }
 
     #[test]
-    fn enclosures(seed: u64) {
+    fn enclosures(seed in any::<u64>()) {
         let mut random = Random(seed);
         let f = spline(&mut random, 2, 3, 2);
         let f = f.mul(&f).expect("alike");

@@ -4,14 +4,14 @@ use crate::common;
 
 use common::splines::{assert_is, spline, value};
 use common::{Exact, Random, within};
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{BSpline, Bernstein, BernsteinMap, KnotVector, SplineError};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(96), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn domains(seed: u64) {
+    fn domains(seed in any::<u64>()) {
         let mut random = Random(seed);
         let n = 1 + random.below(3);
         let f = spline(&mut random, n, 4, 2);
@@ -69,7 +69,7 @@ proptest! {
     }
 
     #[test]
-    fn composition(seed: u64) {
+    fn composition(seed in any::<u64>()) {
         let mut random = Random(seed);
         let f = spline(&mut random, 2, 3, 2);
         let piece = f.pieces().expect("small").swap_remove(0);
@@ -94,7 +94,7 @@ proptest! {
     }
 
     #[test]
-    fn uneven_knots(seed: u64) {
+    fn uneven_knots(seed in any::<u64>()) {
         // Distances over many orders of magnitude, arguments of all bits.
         let mut random = Random(seed);
         let degree = 1 + random.below(4);

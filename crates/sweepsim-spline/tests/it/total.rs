@@ -3,11 +3,11 @@
 use crate::common;
 
 use common::Random;
-use proptest::prelude::*;
+use sweepsim_props::*;
 use sweepsim_spline::{BSpline, Bernstein, BernsteinMap, KnotVector, RationalBernstein, RationalSpline};
 
 /// Any number there is: not finite, huge, tiny, or quite ordinary.
-fn any(random: &mut Random) -> f64 {
+fn anything(random: &mut Random) -> f64 {
     match random.below(14) {
         0 => f64::NAN,
         1 => f64::INFINITY,
@@ -23,12 +23,12 @@ fn any(random: &mut Random) -> f64 {
 }
 
 fn list(random: &mut Random, most: usize) -> Vec<f64> {
-    (0..random.below(most + 1)).map(|_| any(random)).collect()
+    (0..random.below(most + 1)).map(|_| anything(random)).collect()
 }
 
 /// Finite, but of any size.
 fn finite(random: &mut Random) -> f64 {
-    let x = any(random);
+    let x = anything(random);
     if x.is_finite() { x } else { 0.5 }
 }
 
@@ -62,10 +62,10 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: common::cases(400), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn forms(seed: u64) {
+    fn forms(seed in any::<u64>()) {
         let random = &mut Random(seed);
         let (f, g) = (form(random), form(random));
-        let (axis, x, y) = (random.below(5), any(random), any(random));
+        let (axis, x, y) = (random.below(5), anything(random), anything(random));
         let point = list(random, 5);
         let all = [
             f.add(&g), f.sub(&g), f.mul(&g), f.square(), f.scale(x), f.tensor_product(&g),
@@ -113,11 +113,11 @@ proptest! {
     }
 
     #[test]
-    fn splines(seed: u64) {
+    fn splines(seed in any::<u64>()) {
         let random = &mut Random(seed);
         let dimension = 1 + random.below(3);
         let (f, g) = (spline(random, dimension), spline(random, dimension));
-        let (axis, x, y) = (random.below(4), any(random), any(random));
+        let (axis, x, y) = (random.below(4), anything(random), anything(random));
         let point = list(random, 5);
         // Half of the time somewhere in the domain.
         let x = match f.domain().get(axis) {
@@ -164,7 +164,7 @@ proptest! {
     }
 
     #[test]
-    fn constructors(seed: u64) {
+    fn constructors(seed in any::<u64>()) {
         let random = &mut Random(seed);
         let degree = random.below(5);
         let mut numbers = list(random, 14);
@@ -174,15 +174,15 @@ proptest! {
             KnotVector::new(degree, numbers.clone()),
             KnotVector::open(degree, &numbers),
             KnotVector::periodic(degree, &numbers),
-            KnotVector::uniform(degree, random.below(5), any(random), any(random)),
+            KnotVector::uniform(degree, random.below(5), anything(random), anything(random)),
             KnotVector::new(usize::MAX, numbers.clone()),
         ]
         .into_iter()
         .flatten()
         {
-            let x = any(random);
+            let x = anything(random);
             let _ = (knots.span(x), knots.basis(x), knots.basis_derivatives(x, 3), knots.wrap(x), knots.kind());
-            let _ = (knots.greville(), knots.breakpoints(), knots.to_string(), knots.mapped(x, any(random)), knots.reversed());
+            let _ = (knots.greville(), knots.breakpoints(), knots.to_string(), knots.mapped(x, anything(random)), knots.reversed());
             let dimension = random.below(3);
             let data = list(random, 20);
             let _ = BSpline::new(vec![knots.clone()], dimension, data.clone());
@@ -194,10 +194,10 @@ proptest! {
             let _ = RationalSpline::new(vec![knots.clone()], dimension, &data, &list(random, 8));
             let _ = RationalSpline::new(vec![knots.clone()], 1, &vec![1.0; knots.count()], &vec![x; knots.count()]);
         }
-        let points: Vec<[f64; 2]> = (0..random.below(6)).map(|_| [any(random), any(random)]).collect();
+        let points: Vec<[f64; 2]> = (0..random.below(6)).map(|_| [anything(random), anything(random)]).collect();
         let _ = BSpline::curve_through(&points, degree);
-        let (x, y) = (any(random), any(random));
-        let _ = (RationalSpline::circle([x, y], any(random)), RationalSpline::arc(&[x], &[y], &[1.0], x, y));
-        let _ = RationalSpline::arc(&[0.0], &[1.0], &[1.0], x, any(random));
+        let (x, y) = (anything(random), anything(random));
+        let _ = (RationalSpline::circle([x, y], anything(random)), RationalSpline::arc(&[x], &[y], &[1.0], x, y));
+        let _ = RationalSpline::arc(&[0.0], &[1.0], &[1.0], x, anything(random));
     }
 }

@@ -191,14 +191,14 @@ fn horner([a, b, c, d]: &[Quad; 4], x: f64) -> [Quad; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
     use sweepsim_spline::Bernstein;
 
     proptest! {
         /// The jet of a table is that of derivatives computed as forms.
         #[test]
         fn jets_are_values_of_derivative_forms(
-            degrees in [0_usize..6, 0_usize..6], at in [-0.1..1.1, -0.1..1.1], numbers in proptest::collection::vec(-3.0..3.0, 36),
+            degrees in [0_usize..6, 0_usize..6], at in [-0.1..1.1, -0.1..1.1], numbers in collection::vec(-3.0..3.0, 36),
         ) {
             let count = (degrees[0] + 1) * (degrees[1] + 1);
             let form = Bernstein::new(&degrees, numbers[..count].to_vec()).unwrap();
@@ -213,7 +213,7 @@ mod tests {
         /// The jet of a bicubic table about its middle is the same, within its bound.
         #[test]
         fn bicubic_jets_are_those_of_tables(
-            at in [0.0..=1.0, 0.0..=1.0], smooth in any::<bool>(), numbers in proptest::collection::vec([-3.0..3.0, -3.0..3.0, -3.0..3.0, 0.5..2.0], 16),
+            at in [0.0..=1.0, 0.0..=1.0], smooth in any::<bool>(), numbers in collection::vec([-3.0..3.0, -3.0..3.0, -3.0..3.0, 0.5..2.0], 16),
         ) {
             let value = |k: usize, i: usize| {
                 let (u, v) = ((i % 4) as f64, (i / 4) as f64);
@@ -240,7 +240,7 @@ mod tests {
         /// Rounding is within its bound: numbers with few digits at places with few digits have exact jets, as integers.
         #[test]
         fn roundings_of_bicubic_jets_are_bounded(
-            at in [0_i64..=16, 0_i64..=16], numbers in proptest::collection::vec(-3000_i64..3000, 16), scale in 0.9..1.1,
+            at in [0_i64..=16, 0_i64..=16], numbers in collection::vec(-3000_i64..3000, 16), scale in 0.9..1.1,
         ) {
             // Coefficients that are not exact multiples: c = n · scale, so that the exact value is that of the integers times the scale, up to one rounding of each.
             let form = Bernstein::new(&[3, 3], numbers.iter().map(|n| *n as f64 * scale).collect()).unwrap();

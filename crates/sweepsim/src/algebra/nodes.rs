@@ -64,7 +64,7 @@ fn forget_from<T: Divided>(cells: &mut [T], first: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// A cell with a name.
     #[derive(Clone, Debug)]
@@ -85,7 +85,7 @@ mod tests {
         /// What is needed keeps its order and content, older cells keep their numbers, and no part is left that is not there.
         #[test]
         fn needed_cells_stay(
-            before in 1..20_usize, after in 0..60_usize, parts in proptest::collection::vec(0..100_u32, 80), needed in proptest::collection::vec(0..100_u32, 0..12),
+            before in 1..20_usize, after in 0..60_usize, parts in collection::vec(0..100_u32, 80), needed in collection::vec(0..100_u32, 0..12),
         ) {
             let count = before + after;
             let mut cells: Vec<Named> = (0..count).map(|k| Named { name: k as u32, part: parts[k] % count as u32 }).collect();

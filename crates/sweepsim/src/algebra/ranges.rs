@@ -264,7 +264,7 @@ pub(crate) fn envelope_coefficients(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     #[test]
     fn what_is_not_a_number_is_unknown() {
@@ -291,8 +291,8 @@ mod tests {
         /// Points in fours and the rest: the range is that of all, one by one.
         #[test]
         fn ranges_are_those_of_all_points(
-            points in proptest::collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..14),
-            rows in proptest::collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..4),
+            points in collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..14),
+            rows in collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..4),
         ) {
             let triple = |p: &(f64, f64, f64)| [p.0, p.1, p.2];
             let list = |k: usize| points.iter().map(|p| triple(p)[k]).collect::<Vec<f64>>();

@@ -266,7 +266,7 @@ fn width(values: impl Iterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
     use sweepsim_spline::Bernstein;
 
     fn degrees() -> impl Strategy<Value = [usize; 2]> {
@@ -278,8 +278,8 @@ mod tests {
         /// what is said to be missing; and that is an eighth on a cell of half the sides, but for rounding.
         #[test]
         fn reductions_are_within_their_bounds(
-            degrees in degrees(), numbers in proptest::collection::vec(-3.0..3.0, 6 * 144), corner in [0.0..0.9, 0.0..0.9],
-            width in [1e-3..0.1, 1e-3..0.1], whole in any::<bool>(), pole in proptest::option::of((0_usize..2, any::<bool>(), 1.0..12.0_f64, any::<bool>())), at in proptest::collection::vec([0.0..=1.0, 0.0..=1.0], 12),
+            degrees in degrees(), numbers in collection::vec(-3.0..3.0, 6 * 144), corner in [0.0..0.9, 0.0..0.9],
+            width in [1e-3..0.1, 1e-3..0.1], whole in any::<bool>(), pole in prop::option::of((0_usize..2, any::<bool>(), 1.0..12.0_f64, any::<bool>())), at in collection::vec([0.0..=1.0, 0.0..=1.0], 12),
         ) {
             let count = (degrees[0] + 1) * (degrees[1] + 1);
             let mut forms = numbers[..6 * count].to_vec();

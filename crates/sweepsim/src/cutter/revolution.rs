@@ -97,8 +97,8 @@ mod tests {
     use crate::algebra::quad::vector;
     use crate::cutter::patch_forms::PatchForms;
     use nalgebra::{Rotation3, Vector3};
-    use proptest::prelude::*;
     use sweepsim_motion::Tool;
+    use sweepsim_props::*;
 
     fn near(a: &Quad, b: &Quad, error: f64) -> bool {
         a.iter().zip(b).all(|(a, b)| (a - b).abs() <= error)

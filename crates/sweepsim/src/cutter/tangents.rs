@@ -187,8 +187,8 @@ mod tests {
     use crate::algebra::ranges::Triples;
     use crate::cutter::cells::Cells;
     use crate::cutter::patch_forms::PatchForms;
-    use proptest::prelude::*;
     use sweepsim_motion::Tool;
+    use sweepsim_props::*;
 
     fn form(degrees: [usize; 2], value: &dyn Fn(usize) -> f64) -> Bernstein {
         let count = (degrees[0] + 1) * (degrees[1] + 1);
@@ -224,9 +224,9 @@ mod tests {
         #[test]
         fn samples_are_within_their_bounds(
             degrees in prop_oneof![2 => Just([3, 3]), 1 => [2_usize..5, 2_usize..5]], has_pole in any::<bool>(), spread in prop_oneof![Just(0.0), Just(0.04), Just(0.2)],
-            bumps in proptest::collection::vec(-0.08..0.08, 25), numbers in proptest::collection::vec(-1.0..1.0, 25),
-            corner in [0.0..0.9, 0.0..0.9], width in [1e-3..0.1, 1e-3..0.1], is_whole in any::<bool>(), axis in 0_usize..2, near in proptest::option::of(1.0..9.0_f64),
-            places in proptest::collection::vec([0.0..=1.0, 0.0..=1.0], 8),
+            bumps in collection::vec(-0.08..0.08, 25), numbers in collection::vec(-1.0..1.0, 25),
+            corner in [0.0..0.9, 0.0..0.9], width in [1e-3..0.1, 1e-3..0.1], is_whole in any::<bool>(), axis in 0_usize..2, near in prop::option::of(1.0..9.0_f64),
+            places in collection::vec([0.0..=1.0, 0.0..=1.0], 8),
         ) {
             let weights: Vec<f64> = numbers.iter().map(|x| 1.0 + spread * x).collect();
             let Some(patch) = sheet(degrees, has_pole, &bumps, &weights) else { return Ok(()) };

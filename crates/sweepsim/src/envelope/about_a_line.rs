@@ -123,8 +123,8 @@ fn difference(a: Range, b: Range) -> Range {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, PatchMap};
-    use proptest::prelude::*;
     use sweepsim_motion::{Law, Path, Pose, Tool};
+    use sweepsim_props::*;
     use sweepsim_solve::ChartMap;
 
     const SIZE: Size = Size {

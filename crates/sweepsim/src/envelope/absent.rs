@@ -217,8 +217,8 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, EdgeMap, JointSide, PatchMap, PlacedMap};
-    use proptest::prelude::*;
     use sweepsim_motion::{Apt, Law, Path, Pose, Segment, Tool};
+    use sweepsim_props::*;
     use sweepsim_solve::{ChartMap, Enclosure};
 
     const SIZE: Size = Size {

@@ -141,15 +141,15 @@ fn not_positive(coefficients: &[f64]) -> Range {
 mod tests {
     use super::*;
     use crate::envelope::{AnyBox, PatchMap};
-    use proptest::prelude::*;
     use sweepsim_motion::{Law, Path, Pose, Tool};
+    use sweepsim_props::*;
     use sweepsim_solve::{ChartMap, Enclosure};
     use sweepsim_spline::Bernstein;
 
     proptest! {
         /// Nothing is left out where the polynomial is not positive, and what is kept ends near such a place.
         #[test]
-        fn kept_parts_hold_all_that_is_not_positive(coefficients in proptest::collection::vec(-1.0..3.0, 1..7), at in 0.0..1.0) {
+        fn kept_parts_hold_all_that_is_not_positive(coefficients in collection::vec(-1.0..3.0, 1..7), at in 0.0..1.0) {
             let (lo, hi) = not_positive(&coefficients);
             let form = Bernstein::new(&[coefficients.len() - 1], coefficients).unwrap();
             prop_assert!((lo..=hi).contains(&at) || form.evaluate(&[at]) > -1e-14);

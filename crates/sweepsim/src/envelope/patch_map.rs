@@ -272,8 +272,8 @@ impl ChartMap<3> for PatchMap<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::{Law, Patch, Path, Pose, Segment, Tool};
+    use sweepsim_props::*;
     use sweepsim_spline::Bernstein;
 
     const SIZE: Size = Size {
@@ -307,7 +307,7 @@ mod tests {
         /// What is left of a cell at a pole holds each point of it with `g = 0`.
         #[test]
         fn remainders_at_poles_hold_all_zeros(
-            numbers in proptest::collection::vec(-1.0..1.0, 16), angle in 0.0..6.3_f64, digits in 0.0..12.0_f64, falls in any::<bool>(),
+            numbers in collection::vec(-1.0..1.0, 16), angle in 0.0..6.3_f64, digits in 0.0..12.0_f64, falls in any::<bool>(),
             place in 0.0..1.0_f64, share in 0.0..1.0_f64, width in 0.0..6.0_f64, larger in 0.0..4.0_f64,
         ) {
             let patches = [tip(&numbers)];
@@ -342,7 +342,7 @@ mod tests {
 
         /// Where a tip that moves level is steep across its way, next to nothing but the pole is left.
         #[test]
-        fn poles_alone_remain_where_a_level_tip_is_steep(numbers in proptest::collection::vec(-1.0..1.0, 16), start in 0.0..0.2_f64) {
+        fn poles_alone_remain_where_a_level_tip_is_steep(numbers in collection::vec(-1.0..1.0, 16), start in 0.0..0.2_f64) {
             let patches = [tip(&numbers)];
             let elements = PatchForms::of_patches(&patches);
             let element = &elements[0];

@@ -102,7 +102,7 @@ pub(crate) fn at_pole(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// Each point of a patch is in exactly one part, but for those between two; points beside poles are in parts beside poles.

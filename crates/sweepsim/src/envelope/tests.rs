@@ -5,9 +5,9 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::methods::lattice::Lattice;
 use crate::time::pieces::Times;
-use proptest::prelude::*;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Law, Path, Pose, Segment, Tool};
+use sweepsim_props::*;
 use sweepsim_solve::{
     CancelOnly, ChartMap, ChartOptions, ChartSolver, ChartTarget, Enclosure, Preimage, Sample, Sink, Targets,
     UnresolvedTarget,

@@ -260,8 +260,8 @@ mod tests {
     use crate::cutter::{cells::Cells, patch_forms::PatchForms};
     use crate::envelope::{EdgeMap, PatchMap, PlacedMap, Size};
     use crate::time::pieces::Times;
-    use proptest::prelude::*;
     use sweepsim_motion::{Pose, Segment};
+    use sweepsim_props::*;
     use sweepsim_solve::ChartMap;
 
     const SIZE: Size = Size {
@@ -282,7 +282,7 @@ mod tests {
             lean in [-0.8..0.8, -0.8..0.8],
             tip in [-20.0..20.0, -20.0..20.0, -20.0..20.0],
             at in [0.0..1.0, 0.0..1.0, 0.0..1.0],
-            moves in proptest::bool::ANY,
+            moves in prop::bool::ANY,
         ) {
             let tool = [Tool::ball(5.0, 30.0), Tool::flat(5.0, 30.0), Tool::bull(5.0, 1.0, 30.0)][tool].clone().unwrap();
             let start = Pose::new([0.0; 3], [0.1, 0.2, 1.0]).unwrap();

@@ -70,9 +70,9 @@ mod tests {
     use super::*;
     use crate::time::joined::push_joined;
     use crate::time::path_parts::{Kind, parts};
-    use proptest::prelude::*;
     use sweepsim_dexel::Frame;
     use sweepsim_motion::{Path, Pose};
+    use sweepsim_props::*;
 
     const TOLERANCE: f64 = 1e-6;
 
@@ -104,7 +104,7 @@ mod tests {
         /// Bent parts follow each other as before, within the tolerance for a bend, at the same times of the same moves.
         #[test]
         fn bent_parts_are_near_the_path(
-            moves in prop::collection::vec((1..4_u8, prop::bool::weighted(0.2), prop::bool::weighted(0.2)), 1..12),
+            moves in collection::vec((1..4_u8, prop::bool::weighted(0.2), prop::bool::weighted(0.2)), 1..12),
             way in [-1.0..1.0, -1.0..1.0, -1.0..1.0],
             axis in [-1.0..1.0, -1.0..1.0, 0.2..1.0],
             along in any::<bool>(),

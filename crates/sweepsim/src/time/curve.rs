@@ -321,8 +321,8 @@ mod tests {
     use super::*;
     use crate::time::path_parts::parts;
     use crate::tolerances::Tolerances;
-    use proptest::prelude::*;
     use sweepsim_motion::{Move, Path, Pose, TipArc};
+    use sweepsim_props::*;
 
     /// A tip on a quarter of a circle, and an axis that leans on the way.
     fn times() -> CurveTimes {

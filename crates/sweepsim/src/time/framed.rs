@@ -144,8 +144,8 @@ mod tests {
     use crate::time::path_parts::parts;
     use crate::tolerances::Tolerances;
     use nalgebra::Rotation3;
-    use proptest::prelude::*;
     use sweepsim_motion::{Path, Pose};
+    use sweepsim_props::*;
 
     fn near(a: &Quad, b: &Quad, error: f64) -> bool {
         a.iter().zip(b).all(|(a, b)| (a - b).abs() <= error)

@@ -151,8 +151,8 @@ fn extreme(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::{Move, Path, Pose, TipArc, TipCourse, Tool, Turning};
+    use sweepsim_props::*;
 
     /// A straight move, an arc that the tool turns with, or a helix, of a length of ten to a million.
     fn segments(kind: usize, size: f64, [x, y, z]: [f64; 3]) -> Vec<Segment> {

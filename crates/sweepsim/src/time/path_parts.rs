@@ -252,9 +252,9 @@ fn on_vertical_arc(number: usize, part: VerticalArcPart) -> PathPart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::Law;
     use sweepsim_motion::{Move, PathBuilder, Pose, RotaryTable, TipCourse, Turning};
+    use sweepsim_props::*;
 
     /// A path of random turns, some of them of rotary axes, with rests.
     fn path(moves: &[([f64; 3], bool, bool)], packed: bool) -> Path {
@@ -292,7 +292,7 @@ mod tests {
         /// A tool without symmetry has turned alike, whether moves are prepared together or some after others.
         #[test]
         fn later_moves_are_as_among_all(
-            moves in proptest::collection::vec(([-30.0..30.0, -30.0..30.0, 0.1..3.0], any::<bool>(), prop::bool::weighted(0.2)), 2..30),
+            moves in collection::vec(([-30.0..30.0, -30.0..30.0, 0.1..3.0], any::<bool>(), prop::bool::weighted(0.2)), 2..30),
             times in 1..300_usize, packed in any::<bool>(), share in 0.0..1.0, leaning in any::<bool>(),
         ) {
             let moves: Vec<_> = std::iter::repeat_n(&moves, times).flatten().copied().collect();
@@ -316,7 +316,7 @@ mod tests {
         /// Tips between arcs of a lying tool and other moves are displaced alike, whether moves are prepared together or some after others.
         #[test]
         fn tips_are_as_among_all(
-            kinds in proptest::collection::vec((0..4_i32, 1..4_i32), 2..30), packed in any::<bool>(), share in 0.0..1.0,
+            kinds in collection::vec((0..4_i32, 1..4_i32), 2..30), packed in any::<bool>(), share in 0.0..1.0,
         ) {
             let mut tip = [0.0; 3];
             let mut builder = PathBuilder::default();

@@ -280,7 +280,7 @@ fn difference(own: &Heights, cut: impl Iterator<Item = [f64; 2]>) -> Heights {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn heights(marks: &[u8]) -> Heights {
         let mut sorted: Vec<u8> = marks.to_vec();
@@ -298,7 +298,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn operations_hold_point_by_point(a in prop::collection::vec(0_u8..40, 0..12), b in prop::collection::vec(0_u8..40, 0..12)) {
+        fn operations_hold_point_by_point(a in collection::vec(0_u8..40, 0..12), b in collection::vec(0_u8..40, 0..12)) {
             let (a, b) = (heights(&a), heights(&b));
             let lines = |heights: &Heights| Lines(if heights.is_empty() { vec![] } else { vec![(3, heights.clone())] });
             let all = lines(&a).united(&lines(&b));

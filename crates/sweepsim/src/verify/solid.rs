@@ -251,8 +251,8 @@ impl<'a> MovingSolid<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::{Move, Pose, TipArc, TipCourse, Turning};
+    use sweepsim_props::*;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
@@ -284,7 +284,7 @@ mod tests {
         /// A solid that is prepared for one path sweeps the same along another as if it had been prepared for that alone.
         #[test]
         fn what_is_prepared_of_a_tool_serves_other_paths(
-            tips in prop::collection::vec(prop::array::uniform3(-12.0..12.0_f64), 2..5),
+            tips in collection::vec(prop::array::uniform3(-12.0..12.0_f64), 2..5),
             lean in prop_oneof![Just(0.0), -0.5..0.5_f64],
         ) {
             let pose = |tip: [f64; 3], lean: f64| Pose::new(tip, [lean, 0.2 * lean, 1.0]).unwrap();

@@ -3,11 +3,11 @@
 
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::translations::{TOLERANCE, UP, agree, tools};
-use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
+use sweepsim_props::*;
 
 /// An arc of the path: radius, the direction of its plane, angle of its start from that direction upwards, angle.
 pub type Arc = [f64; 4];
@@ -66,7 +66,7 @@ pub fn angles() -> impl Strategy<Value = f64> {
 fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec<Arc>> {
     let arc =
         (radius, planes(), starts(), angles()).prop_map(|(radius, plane, from, angle)| [radius, plane, from, angle]);
-    prop::collection::vec(arc, 1..=count)
+    collection::vec(arc, 1..=count)
 }
 
 proptest! {

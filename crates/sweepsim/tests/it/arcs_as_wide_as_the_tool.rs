@@ -3,12 +3,12 @@
 //! samples in time.
 
 use crate::translations::{TOLERANCE, UP, agree, same, tools};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
 use sweepsim::{Cut, Method, Options, simulate, sweep};
 use sweepsim_dexel::{Grid, Stock};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// Radii of walls, edges and necks of the [`tools`].
 const RADII: [f64; 7] = [3.0, 2.5, 1.0, 1.1, 2.2, 2.4, 0.7];

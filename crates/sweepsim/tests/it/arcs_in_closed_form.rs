@@ -2,12 +2,12 @@
 //! certificates.
 
 use crate::translations::{TOLERANCE, UP, agree, same, tools};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
 use sweepsim::{Cut, Method, Options, Sweep, simulate, sweep};
 use sweepsim_dexel::{Grid, Stock};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// An arc of the path: radius, angle of its start, angle, rise.
 pub type Arc = [f64; 4];
@@ -137,7 +137,7 @@ proptest! {
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]
     fn level(number in 0_usize..13, start in small(3.0), way in small(2.0),
-        arcs in prop::collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -1.0..1.0_f64], 1..3)) {
+        arcs in collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -1.0..1.0_f64], 1..3)) {
         prop_assume!(arcs.iter().all(|arc| arc[2].abs() > 0.1));
         let arcs: Vec<Arc> = arcs.iter().map(|arc| [arc[0], arc[1], arc[2], 0.0]).collect();
         check_in_general(number, &path(start, &arcs, way))?;
@@ -146,7 +146,7 @@ proptest! {
     /// Helices.
     #[test]
     fn helices(number in 0_usize..13, start in small(3.0), way in small(2.0),
-        arcs in prop::collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -1.5..1.5_f64], 1..3)) {
+        arcs in collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -1.5..1.5_f64], 1..3)) {
         prop_assume!(arcs.iter().all(|arc| arc[2].abs() > 0.1));
         check_in_general(number, &path(start, &arcs, way))?;
     }
@@ -170,7 +170,7 @@ proptest! {
     /// Only what comes near material is computed, and what is above it is counted: the part is the same.
     #[test]
     fn near_material(number in 0_usize..13, start in small(3.0), way in small(2.0),
-        arcs in prop::collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -0.4..0.4_f64], 1..4)) {
+        arcs in collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -0.4..0.4_f64], 1..4)) {
         prop_assume!(arcs.iter().all(|arc| arc[2].abs() > 0.1));
         let arcs: Vec<Arc> = arcs.iter().enumerate().map(|(n, arc)| if n % 2 == 0 { [arc[0], arc[1], arc[2], 0.0] } else { *arc }).collect();
         let path = path([start[0], start[1], start[2].abs() - 1.0], &arcs, [way[0], way[1], 0.0]);

@@ -4,13 +4,13 @@
 use crate::arcs_along_dexels::least;
 use crate::arcs_in_closed_form::{check_near_material, grid, small};
 use crate::translations::{TOLERANCE, agree, cases, tools};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::nalgebra::{Rotation3, Unit, Vector3};
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// An arc of the path: radius, the direction of its start from its centre as an angle about the axis, angle.
 type Arc = [f64; 3];
@@ -54,7 +54,7 @@ fn angles() -> impl Strategy<Value = f64> {
 
 fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec<Arc>> {
     let arc = (radius, -PI..PI, angles()).prop_map(|(radius, from, angle)| [radius, from, angle]);
-    prop::collection::vec(arc, 1..=count)
+    collection::vec(arc, 1..=count)
 }
 
 /// Axes that lean: some by next to nothing, and some so much that they almost lie.

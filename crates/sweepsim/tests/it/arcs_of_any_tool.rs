@@ -5,12 +5,12 @@ use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, sm
 use crate::displaced::agree_with;
 use crate::grazing_curves::tools;
 use crate::translations::{TOLERANCE, UP, agree, cases};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Move, Path, Pose, TipArc};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// A chain of straight moves and of arcs with which the tool turns.
 struct Chain {
@@ -100,7 +100,7 @@ fn check(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
 /// Less than half a turn: the poses do not tell of more.
 fn arcs(rise: f64) -> impl Strategy<Value = Vec<Arc>> {
     let one = [0.3..6.0_f64, -PI..PI, -PI..PI, -1.0..1.0_f64].prop_filter("short", |arc| arc[2].abs() > 0.1);
-    prop::collection::vec(
+    collection::vec(
         one.prop_map(move |[radius, from, angle, up]| [radius, from, angle, rise * up]),
         1..3,
     )

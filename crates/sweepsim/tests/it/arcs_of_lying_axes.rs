@@ -5,12 +5,12 @@ use crate::arcs_along_dexels::{angles, least_of, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::arcs_of_lying_tools::seen;
 use crate::translations::{TOLERANCE, agree, cases, tools};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::{Options, SweepError, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, TipArc};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// An arc: radius, angle of its start, angle.
 type Arc = [f64; 3];
@@ -85,7 +85,7 @@ fn lies() -> impl Strategy<Value = Lie> {
 
 fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec<Arc>> {
     let arc = (radius, starts(), angles()).prop_map(|(radius, from, angle)| [radius, from, angle]);
-    prop::collection::vec(arc, 1..=count)
+    collection::vec(arc, 1..=count)
 }
 
 /// Level arcs are displaced within their plane for closed forms only, so that there may be other crossings within the

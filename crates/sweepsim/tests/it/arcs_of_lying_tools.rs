@@ -4,10 +4,10 @@
 use crate::arcs_along_dexels::{Arc, angles, direction, least_of, path, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::translations::{TOLERANCE, agree, cases, tools};
-use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::Grid;
+use sweepsim_props::*;
 
 /// The axis of a tool that lies across the plane of its arcs.
 fn axis(plane: f64, positive: bool) -> [f64; 3] {
@@ -33,7 +33,7 @@ fn along(plane: f64, [x, y, z]: [f64; 3], level: bool) -> [f64; 3] {
 /// Arcs in one plane.
 fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec<Arc>> {
     let arc = (radius, starts(), angles());
-    (planes(), prop::collection::vec(arc, 1..=count)).prop_map(|(plane, arcs)| {
+    (planes(), collection::vec(arc, 1..=count)).prop_map(|(plane, arcs)| {
         let arcs = arcs.into_iter();
         arcs.map(|(radius, from, angle)| [radius, plane, from, angle]).collect()
     })

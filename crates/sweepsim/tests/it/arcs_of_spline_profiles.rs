@@ -4,12 +4,12 @@
 use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, check_tool_near_material, grid, path, small};
 use crate::displaced::agree_with;
 use crate::translations::{TOLERANCE, UP, agree, cases};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
     ProfileSegment::Line { to: [rho, zeta] }
@@ -77,7 +77,7 @@ fn check(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
 
 fn arcs(rise: f64) -> impl Strategy<Value = Vec<Arc>> {
     let one = [0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -1.0..1.0_f64].prop_filter("short", |arc| arc[2].abs() > 0.1);
-    prop::collection::vec(
+    collection::vec(
         one.prop_map(move |[radius, from, angle, up]| [radius, from, angle, rise * up]),
         1..3,
     )
@@ -130,7 +130,7 @@ proptest! {
 
     /// Chains of arcs and straight moves without corners.
     #[test]
-    fn chains(number in 0_usize..6, start in small(3.0), steps in prop::collection::vec((0.5..4.0_f64, -1.2..1.2_f64, -0.2..0.2_f64), 2..7), is_level in any::<bool>()) {
+    fn chains(number in 0_usize..6, start in small(3.0), steps in collection::vec((0.5..4.0_f64, -1.2..1.2_f64, -0.2..0.2_f64), 2..7), is_level in any::<bool>()) {
         let steps: Vec<_> = steps.into_iter().map(|(length, curvature, slope)| (length, curvature, if is_level { 0.0 } else { slope })).collect();
         check(number, &tangent(start, &steps), &grid([23, 21]))?;
     }

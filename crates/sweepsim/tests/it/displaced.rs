@@ -1,10 +1,10 @@
 //! The closed forms and the general method compared: both displace lines and tips by a part of the tolerance, not
 //! always alike.
 
-use proptest::prelude::*;
 use sweepsim::{Method, Options, Sweep, sweep};
 use sweepsim_dexel::{End, Grid, Interval, Source};
 use sweepsim_motion::{Path, Tool};
+use sweepsim_props::*;
 
 /// Whether the ends agree, each within the tolerance measured across the surface. Intervals and gaps shorter than the
 /// tolerance may be missing or extra.

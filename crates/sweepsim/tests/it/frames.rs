@@ -1,10 +1,10 @@
 //! Dexels in any frame see the same cuts, and those along three axes one part.
 
 use nalgebra::Vector3;
-use proptest::prelude::*;
 use sweepsim::{Cut, Method, Options, simulate_tri, sweep};
 use sweepsim_dexel::{Dexels, Frame, Grid, Stock, TriDexels};
 use sweepsim_motion::{Law, Move, Path, Pose, TipArc, Tool, Turning};
+use sweepsim_props::*;
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -35,7 +35,7 @@ fn compare(a: &Dexels, b: &Dexels) -> (usize, usize) {
 }
 
 fn vector() -> impl Strategy<Value = [f64; 3]> {
-    proptest::array::uniform3(-1.0..1.0)
+    prop::array::uniform3(-1.0..1.0)
 }
 
 proptest! {
@@ -44,8 +44,8 @@ proptest! {
     #[test]
     fn a_frame_is_the_world_moved_the_other_way(
         (o, z, x) in (vector(), vector(), vector()),
-        tips in proptest::array::uniform3(vector()),
-        axes in proptest::array::uniform3(vector()),
+        tips in prop::array::uniform3(vector()),
+        axes in prop::array::uniform3(vector()),
         law in prop_oneof![Just(Law::Slerp), Just(Law::ConstantSpeed)],
         tool in 0..2usize,
     ) {

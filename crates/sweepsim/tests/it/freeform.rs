@@ -1,10 +1,10 @@
 //! Tools of any shape: user-defined patches, with and without symmetry.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use proptest::prelude::*;
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Patch, Path, Pose, Tool};
+use sweepsim_props::*;
 use sweepsim_spline::Bernstein;
 
 const TOLERANCE: f64 = 1e-6;
@@ -185,7 +185,7 @@ proptest! {
 
     /// The general path and the closed forms of surfaces of revolution agree.
     #[test]
-    fn patches_agree_with_revolution(poses in prop::collection::vec(pose(), 2..4), which in 0..3_usize) {
+    fn patches_agree_with_revolution(poses in collection::vec(pose(), 2..4), which in 0..3_usize) {
         let (tool, general, edges) = with_and_without(which);
         prop_assert_eq!(general.edges().len(), edges);
         prop_assert!(general.profile().is_none());
@@ -201,7 +201,7 @@ proptest! {
     /// Patches of high degree, with poles, are swept like the round tools that they are: their normals are reduced on
     /// cells, and evaluated from derivatives.
     #[test]
-    fn patches_of_no_special_form(poses in proptest::collection::vec(pose(), 2..3), ball in any::<bool>(), bend in 0.2..0.6) {
+    fn patches_of_no_special_form(poses in collection::vec(pose(), 2..3), ball in any::<bool>(), bend in 0.2..0.6) {
         let (wall, top) = (|from: f64| line([2.0, from], [2.0, 9.0]), line([2.0, 9.0], [0.0, 9.0]));
         let (tool, pieces) = if ball {
             let round = quarter([0.0, 0.0], [2.0, 0.0], [2.0, 2.0]);
@@ -289,7 +289,7 @@ proptest! {
     /// A tool that is not symmetric is carried along by poses that only say its axis: turning all of them about an axis
     /// changes nothing else.
     #[test]
-    fn carried_tools_do_not_turn_about_their_axis(poses in prop::collection::vec(pose(), 2..5)) {
+    fn carried_tools_do_not_turn_about_their_axis(poses in collection::vec(pose(), 2..5)) {
         let path = Path::new(poses).unwrap();
         let grid = Grid::new([-9.0, -9.0], [9.0, 9.0], [14, 14]).unwrap();
         let options = Options::new(TOLERANCE);

@@ -2,12 +2,12 @@
 
 use crate::freeform::block;
 use crate::translations::{TOLERANCE, agree, cases, path, same};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Patch, Path, Pose, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 use sweepsim_spline::{Bernstein, KnotVector, RationalSpline};
 
 fn bicubic(point: impl Fn(f64, f64) -> [f64; 3]) -> Patch {
@@ -162,7 +162,7 @@ proptest! {
 
     /// Moves in all directions, in any orientation, on grids in any frame.
     #[test]
-    fn any_moves(number in 0..3usize, turn in turn(), x in turn(), y in turn(), turned in any::<bool>(), tips in prop::collection::vec(tip(), 2..5)) {
+    fn any_moves(number in 0..3usize, turn in turn(), x in turn(), y in turn(), turned in any::<bool>(), tips in collection::vec(tip(), 2..5)) {
         let mut grid = grid([29, 31]);
         if turned {
             let frame = Frame::new([0.3, -0.2, 0.1], x, [y[1], -y[0], y[2]]);
@@ -176,7 +176,7 @@ proptest! {
     /// block. No line is over the pole of the bud.
     #[test]
     fn moves_along_the_axes(number in 0..3usize, turn in turn(), stands in any::<bool>(), start in [-4..4, -4..4, -2..2],
-        steps in prop::collection::vec((0..3usize, -4..5), 1..6)) {
+        steps in collection::vec((0..3usize, -4..5), 1..6)) {
         let mut tips = vec![start.map(f64::from)];
         for (axis, step) in steps {
             let mut next = tips[tips.len() - 1];
@@ -223,7 +223,7 @@ proptest! {
 
     /// Grids on which many lines lie over one chart, so that its curve is divided before its lines are looked at.
     #[test]
-    fn many_lines_over_a_chart(number in 0..3usize, turn in turn(), tips in prop::collection::vec(tip(), 2..4), narrow in any::<bool>()) {
+    fn many_lines_over_a_chart(number in 0..3usize, turn in turn(), tips in collection::vec(tip(), 2..4), narrow in any::<bool>()) {
         let cells = if narrow { [23, 397] } else { [151, 149] };
         agree_cheaply(number, &carried(&tips, turn), &grid(cells))?;
     }

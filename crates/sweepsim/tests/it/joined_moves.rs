@@ -2,10 +2,10 @@
 //! sources that say which of them it was.
 
 use super::translations::{TOLERANCE, UP, path, same, tools};
-use proptest::prelude::*;
 use sweepsim::{Cut, Method, Options, Simulation, simulate};
 use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock};
 use sweepsim_motion::{Path, Tool};
+use sweepsim_props::*;
 
 fn stock() -> Dexels {
     let grid = Grid::new([-12.3, -12.1], [12.2, 12.4], [31, 29]).expect("a grid");
@@ -49,8 +49,8 @@ proptest! {
 
     #[test]
     fn moves_in_one_direction_cut_as_one(
-        kind in 0..13_usize, lean in prop_oneof![Just([0.0; 2]), [-0.4..0.4, -0.4..0.4]], corners in proptest::collection::vec(corner(), 2..5),
-        pieces in proptest::collection::vec(1..40_usize, 3), rests in any::<bool>(),
+        kind in 0..13_usize, lean in prop_oneof![Just([0.0; 2]), [-0.4..0.4, -0.4..0.4]], corners in collection::vec(corner(), 2..5),
+        pieces in collection::vec(1..40_usize, 3), rests in any::<bool>(),
     ) {
         let (name, tool, _) = tools().swap_remove(kind);
         let axis = [lean[0], lean[1], 1.0];
@@ -71,7 +71,7 @@ proptest! {
     /// A ball end touches what it leaves when it is said to.
     #[test]
     fn sources_are_those_of_the_moves(
-        corners in proptest::collection::vec(corner(), 2..5), pieces in proptest::collection::vec(1..40_usize, 3), rests in any::<bool>(),
+        corners in collection::vec(corner(), 2..5), pieces in collection::vec(1..40_usize, 3), rests in any::<bool>(),
     ) {
         let radius = 2.5;
         let tips = divided(&corners, &pieces, rests);

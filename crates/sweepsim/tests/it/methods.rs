@@ -1,9 +1,9 @@
 //! All methods give the same dexels; a sweep is what closed forms say.
 
-use proptest::prelude::*;
 use sweepsim::{Method, Monitor, Options, SweepError, sweep};
 use sweepsim_dexel::{Dexels, End, Grid};
 use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool, Turn};
+use sweepsim_props::*;
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).unwrap()
@@ -63,8 +63,8 @@ proptest! {
     #[test]
     fn all_methods_agree(
         tool in 0..4usize,
-        tips in proptest::collection::vec(vector(12.0), 2..4),
-        leans in proptest::collection::vec(vector(0.8), 4),
+        tips in collection::vec(vector(12.0), 2..4),
+        leans in collection::vec(vector(0.8), 4),
     ) {
         let poses = tips.iter().zip(&leans).map(|(tip, lean)| pose(*tip, [lean[0], lean[1], 1.0])).collect();
         let path = Path::new(poses).unwrap();

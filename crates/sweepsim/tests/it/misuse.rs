@@ -1,12 +1,12 @@
 //! Input at the limits of what numbers can hold: an error, or a result that says what is uncertain; never a panic,
 //! never a silent loss.
 
-use proptest::prelude::*;
 use sweepsim::motion::Patch;
 use sweepsim::prelude::*;
 use sweepsim::spline::Bernstein;
 use sweepsim::systems::Plane;
 use sweepsim::{Ray, probe, section};
+use sweepsim_props::*;
 
 /// A block with its tip at the origin, all weights the same.
 fn block(weight: f64) -> Option<Tool> {
@@ -97,7 +97,7 @@ fn weights_that_underflow_lose_nothing_in_silence() {
 proptest! {
     /// Whatever the numbers: an error, or a plane with a frame.
     #[test]
-    fn planes_are_valid_or_refused(normal in proptest::array::uniform3(any::<f64>()), offset in any::<f64>()) {
+    fn planes_are_valid_or_refused(normal in prop::array::uniform3(any::<f64>()), offset in any::<f64>()) {
         match Plane::new(normal, offset) {
             Ok(plane) => {
                 let [a, b] = plane.frame();

@@ -3,11 +3,11 @@
 use crate::freeform::block;
 use crate::grazing_curves::{carried, oval, straight};
 use crate::translations::{TOLERANCE, UP, cases, path, same, tools};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use sweepsim::{Cut, Method, Options, simulate, sweep};
 use sweepsim_dexel::{Dexels, Grid, Stock};
 use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 fn grid() -> Grid {
     Grid::new([-10.03, -9.96], [10.04, 10.02], [41, 37]).expect("a grid")
@@ -64,7 +64,7 @@ fn stock() -> Dexels {
 /// Tips below, in and above the stock.
 fn tips() -> impl Strategy<Value = Vec<[f64; 3]>> {
     let level = prop_oneof![Just(-0.5), Just(-1.25), -4.0..3.0, Just(6.0)];
-    prop::collection::vec((-9.0..9.0, -9.0..9.0, level).prop_map(|(x, y, z)| [x, y, z]), 2..9)
+    collection::vec((-9.0..9.0, -9.0..9.0, level).prop_map(|(x, y, z)| [x, y, z]), 2..9)
 }
 
 proptest! {
@@ -138,7 +138,7 @@ fn long_tools() -> Vec<Tool> {
 fn poses() -> impl Strategy<Value = Vec<([f64; 3], [f64; 2])>> {
     let lean = prop_oneof![3 => -0.4..0.4, 1 => -1.5..1.5];
     let axis = [lean.clone(), lean];
-    prop::collection::vec((tips().prop_map(|tips| tips[0]), axis), 2..7)
+    collection::vec((tips().prop_map(|tips| tips[0]), axis), 2..7)
 }
 
 /// What becomes of it when the tool takes these poses.

@@ -1,9 +1,9 @@
 //! Intervals on lines of any direction.
 
-use proptest::prelude::*;
 use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::prelude::*;
 use sweepsim::{Ray, RayError, probe};
+use sweepsim_props::*;
 
 fn tool() -> Tool {
     Tool::bull(4.0, 1.0, 20.0).unwrap()
@@ -56,7 +56,7 @@ proptest! {
 
     /// Whatever the numbers: an error, or a ray whose direction has length one.
     #[test]
-    fn rays_are_valid_or_refused(origin in proptest::array::uniform3(any::<f64>()), direction in proptest::array::uniform3(any::<f64>())) {
+    fn rays_are_valid_or_refused(origin in prop::array::uniform3(any::<f64>()), direction in prop::array::uniform3(any::<f64>())) {
         match Ray::new(origin, direction) {
             Ok(ray) => {
                 prop_assert!((Vector3::from(ray.direction()).norm() - 1.0).abs() < 1e-14);

@@ -1,13 +1,13 @@
 //! Moves along the tool's own axis: all of its wall slides along itself.
 
 use crate::translations::{TOLERANCE, UP, cases, path, tools};
-use proptest::prelude::*;
-use proptest::test_runner::{TestCaseError, TestCaseResult};
 use std::sync::LazyLock;
 use sweepsim::nalgebra::Vector3;
 use sweepsim::{Method, Options, sweep};
 use sweepsim_dexel::{Grid, Interval};
 use sweepsim_motion::{Apt, Path, Pose, Tool};
+use sweepsim_props::test_runner::{TestCaseError, TestCaseResult};
+use sweepsim_props::*;
 
 const METHODS: [Method; 5] = [
     Method::General,
@@ -269,7 +269,7 @@ proptest! {
     /// Lines within roundings of the ruling on which the displacement of tips lets `g` vanish: each is settled, by all
     /// methods, and ends where the tool has been.
     #[test]
-    fn lines_on_a_ruling_that_slides_along_itself(retract in retract(), lines in prop::collection::vec(beside(), 6)) {
+    fn lines_on_a_ruling_that_slides_along_itself(retract in retract(), lines in collection::vec(beside(), 6)) {
         let retract = Retract { leaves: None, turns: None, ..retract };
         for line in &lines {
             let at = retract.place(line);
@@ -284,7 +284,7 @@ proptest! {
 
     /// The same for moves that leave the axis, or turn, by little: a turn by less than 1e-13 counts as none.
     #[test]
-    fn moves_almost_along_the_axis_are_settled(retract in retract(), turning in any::<bool>(), lines in prop::collection::vec(beside(), 6)) {
+    fn moves_almost_along_the_axis_are_settled(retract in retract(), turning in any::<bool>(), lines in collection::vec(beside(), 6)) {
         let retract = Retract { turns: retract.turns.filter(|_| turning), ..retract };
         let moves_by = (retract.aside(retract.leaves).norm() + retract.aside(retract.turns).norm()) * 50.0;
         for line in &lines {
@@ -299,7 +299,7 @@ proptest! {
 
     /// A turn in place, however small, before a retract along the axis: a neck and a ball, and any tool.
     #[test]
-    fn retracts_after_a_turn_are_settled(retract in retract(), is_lollipop in any::<bool>(), lines in prop::collection::vec(beside(), 6)) {
+    fn retracts_after_a_turn_are_settled(retract in retract(), is_lollipop in any::<bool>(), lines in collection::vec(beside(), 6)) {
         let retract = Retract { leaves: None, ..retract };
         let retract = if is_lollipop { Retract { number: 9, radius: 1.1, ..retract } } else { retract };
         for line in &lines {

@@ -1,9 +1,9 @@
 //! Sections by planes agree with the intervals of lines in them.
 
-use proptest::prelude::*;
 use sweepsim::systems::Plane;
 use sweepsim::{Cut, Options, Ray, probe, section};
 use sweepsim_motion::{Path, Pose, Tool};
+use sweepsim_props::*;
 
 fn tools() -> [Tool; 3] {
     [
@@ -24,8 +24,8 @@ proptest! {
     #[test]
     fn outlines_cross_lines_where_intervals_end(
         tool in 0..3usize,
-        tips in proptest::collection::vec(vector(12.0), 2..4),
-        leans in proptest::collection::vec(vector(0.6), 4),
+        tips in collection::vec(vector(12.0), 2..4),
+        leans in collection::vec(vector(0.6), 4),
         x in -6.0..6.0f64,
         shift in 0.0..1.0f64,
     ) {

@@ -5,12 +5,12 @@ use crate::displaced::agree_with;
 use crate::freeform::block;
 use crate::grazing_curves::{bud, carried};
 use crate::translations::{TOLERANCE, agree, cases};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Edge, Patch, Tool};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 use sweepsim_spline::Bernstein;
 
 /// Numbers between −1 and 1 that look random.
@@ -120,7 +120,7 @@ proptest! {
 
     /// Moves in all directions, in any orientation, on grids in any frame.
     #[test]
-    fn any_moves(number in 0..10_000_u64, turn in turn(), x in turn(), y in turn(), turned in any::<bool>(), tips in prop::collection::vec(tip(), 2..5)) {
+    fn any_moves(number in 0..10_000_u64, turn in turn(), x in turn(), y in turn(), turned in any::<bool>(), tips in collection::vec(tip(), 2..5)) {
         let mut grid = grid([29, 31]);
         if turned {
             let frame = Frame::new([0.3, -0.2, 0.1], x, [y[1], -y[0], y[2]]);
@@ -133,7 +133,7 @@ proptest! {
     /// Level moves, moves along the grid and plunges, of tools that stand or lean.
     #[test]
     fn moves_along_the_axes(number in prop_oneof![Just(1), 1..10_000_u64], turn in turn(), stands in any::<bool>(), start in [-4..4, -4..4, -2..2],
-        steps in prop::collection::vec((0..3usize, -4..5), 1..6)) {
+        steps in collection::vec((0..3usize, -4..5), 1..6)) {
         let mut tips = vec![start.map(f64::from)];
         for (axis, step) in steps {
             let mut next = tips[tips.len() - 1];
@@ -207,7 +207,7 @@ proptest! {
 
     /// Grids on which many lines lie over one chart, so that its curve is divided before its lines are looked at.
     #[test]
-    fn many_lines_over_a_chart(number in 0..10_000_u64, turn in turn(), tips in prop::collection::vec(tip(), 2..4), narrow in any::<bool>()) {
+    fn many_lines_over_a_chart(number in 0..10_000_u64, turn in turn(), tips in collection::vec(tip(), 2..4), narrow in any::<bool>()) {
         let cells = if narrow { [23, 397] } else { [151, 149] };
         agree_cheaply(number, &tips, turn, &grid(cells))?;
     }
@@ -233,7 +233,7 @@ proptest! {
 
     /// Against a method that solves each line by itself: edges are left to charts, with which the tests above compare.
     #[test]
-    fn as_line_by_line(number in 0..10_000_u64, turn in turn(), tips in prop::collection::vec(tip(), 2..4)) {
+    fn as_line_by_line(number in 0..10_000_u64, turn in turn(), tips in collection::vec(tip(), 2..4)) {
         let (name, tool) = tool(number);
         agree_with(Method::Lines, &name, &tool, &carried(&tips, turn), (&grid([13, 11]), TOLERANCE))?;
     }

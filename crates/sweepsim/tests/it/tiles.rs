@@ -1,9 +1,9 @@
 //! Grids in tiles: what is found on a line depends on no other tile, and on the division only within the tolerance.
 
-use proptest::prelude::*;
 use sweepsim::prelude::*;
 use sweepsim::{Method, Simulation, simulate_tiles};
 use sweepsim_dexel::{Dexels, Frame, Grid, TilesError};
+use sweepsim_props::*;
 
 const TOLERANCE: f64 = 1e-5;
 
@@ -43,7 +43,7 @@ proptest! {
 
     #[test]
     fn tiles_do_not_know_of_each_other(
-        seed in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64), 3..9),
+        seed in collection::vec((-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64), 3..9),
         tool in 0..3_usize,
         method in 0..3_usize,
         framed in any::<bool>(),

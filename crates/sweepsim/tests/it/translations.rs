@@ -2,12 +2,12 @@
 //! certificates.
 
 pub use crate::displaced::{agree, same};
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::Vector3;
 use sweepsim::{Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Path, Pose, Profile, ProfileSegment, Taper, Tool, Turn};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 pub const TOLERANCE: f64 = 1e-6;
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -149,13 +149,13 @@ proptest! {
 
     /// Ramps up and down in all directions.
     #[test]
-    fn any_moves(number in 0..13usize, tips in prop::collection::vec(tip(), 2..5)) {
+    fn any_moves(number in 0..13usize, tips in collection::vec(tip(), 2..5)) {
         agree_in_general(number, &tips, &grid([37, 41]))?;
     }
 
     /// Level moves, moves along the grid, and plunges.
     #[test]
-    fn moves_along_the_axes(number in 0..13usize, start in [-4..4, -4..4, -2..2], steps in prop::collection::vec((0..3usize, -4..5), 1..6)) {
+    fn moves_along_the_axes(number in 0..13usize, start in [-4..4, -4..4, -2..2], steps in collection::vec((0..3usize, -4..5), 1..6)) {
         let mut tips = vec![start.map(f64::from)];
         for (axis, step) in steps {
             let mut next = tips[tips.len() - 1];
@@ -180,7 +180,7 @@ proptest! {
     /// 3+2: a constant tilt, and grids in any frame.
     #[test]
     fn tilted_tools(number in 0..13usize, axis in lean(), x in lean(), y in lean(), turned in any::<bool>(),
-        tips in prop::collection::vec(tip(), 2..5)) {
+        tips in collection::vec(tip(), 2..5)) {
         let (name, tool, _) = &tools()[number];
         let mut grid = grid([23, 26]);
         if turned {
@@ -301,7 +301,7 @@ proptest! {
     #[test]
     fn across_the_axis(
         tool in prop::sample::select(WITH_TORI.to_vec()), axis in lean(), start in tip(),
-        steps in prop::collection::vec((-4.0..4.0_f64, -4.0..4.0_f64, -1.0..1.0_f64, -15..1i32), 1..4)
+        steps in collection::vec((-4.0..4.0_f64, -4.0..4.0_f64, -1.0..1.0_f64, -15..1i32), 1..4)
     ) {
         let (name, tool, _) = &tools()[tool];
         let along = Vector3::from(axis).normalize();
@@ -320,7 +320,7 @@ proptest! {
     /// Tools that lean by next to nothing, or almost lie, on moves along the grid and along their own axis.
     #[test]
     fn hardly_tilted(number in 0..13usize, exponent in -14..-1i32, lying in any::<bool>(), heading in 0.0..6.3,
-        start in [-3..3, -3..3, -2..2], steps in prop::collection::vec((0..4usize, -3..4), 1..4)) {
+        start in [-3..3, -3..3, -2..2], steps in collection::vec((0..4usize, -3..4), 1..4)) {
         let off = 10f64.powi(exponent);
         let (c, s) = (f64::cos(heading), f64::sin(heading));
         let axis = if lying { [c, s, off] } else { [c * off, s * off, 1.0] };

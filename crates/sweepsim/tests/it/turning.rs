@@ -1,11 +1,11 @@
 //! Moves that turn, line by line, against charts: the same crossings from other equations, bounds and certificates.
 
 use super::translations::{TOLERANCE, agree, cases, tools};
-use proptest::prelude::*;
 use sweepsim::Statistics;
 use sweepsim::nalgebra::Vector3;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Pose};
+use sweepsim_props::*;
 
 /// Poses with their axes. Where there is no path, the case is rejected, and another is tried in its place.
 fn path(poses: &[([f64; 3], [f64; 3])]) -> Result<Path, TestCaseError> {
@@ -61,14 +61,14 @@ proptest! {
 
     /// Long moves with large turns, upright on the way or not.
     #[test]
-    fn long_moves(number in 0..13usize, poses in prop::collection::vec((tip(8.0), axis()), 2..4)) {
+    fn long_moves(number in 0..13usize, poses in collection::vec((tip(8.0), axis()), 2..4)) {
         let path = path(&poses)?;
         agree_along(number, &path, &grid(31))?;
     }
 
     /// Short moves with small turns, as in programs.
     #[test]
-    fn short_moves(number in 0..13usize, from in tip(5.0), first in axis(), steps in prop::collection::vec((tip(0.7), [-0.05..0.05_f64, -0.05..0.05]), 2..6)) {
+    fn short_moves(number in 0..13usize, from in tip(5.0), first in axis(), steps in collection::vec((tip(0.7), [-0.05..0.05_f64, -0.05..0.05]), 2..6)) {
         let mut poses = vec![(from, first)];
         for (step, turn) in steps {
             let (tip, axis) = poses[poses.len() - 1];
@@ -80,7 +80,7 @@ proptest! {
 
     /// An axis that always passes one point, within the tool or beside it: there the tool hardly moves across its axis.
     #[test]
-    fn about_a_point(number in 0..13usize, height in -2.0..12.0_f64, sink in -0.4..0.4_f64, axes in prop::collection::vec(axis(), 2..5), small in any::<bool>()) {
+    fn about_a_point(number in 0..13usize, height in -2.0..12.0_f64, sink in -0.4..0.4_f64, axes in collection::vec(axis(), 2..5), small in any::<bool>()) {
         let first = axes[0];
         let poses: Vec<_> = axes.iter().enumerate().map(|(n, axis)| {
             // Turns as large as they come, or of a few degrees.

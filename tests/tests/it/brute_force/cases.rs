@@ -1,11 +1,11 @@
 //! Tools, moves and grids for random cases.
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use proptest::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Pose, Tool};
+use sweepsim_props::*;
 use sweepsim_tests::tools;
 
 /// A tool with its largest radius.

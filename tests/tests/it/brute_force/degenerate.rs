@@ -3,9 +3,9 @@
 
 use crate::brute_force::cases::{Case, any_tool, any_window, axis, flat, pose, tip, turned};
 use crate::brute_force::judge::{Tally, for_all, judge};
-use proptest::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::Method;
+use sweepsim_props::*;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 

@@ -1,8 +1,8 @@
 //! Random tools: outlines with splines, tapers, whole balls, and the cutters of the other tests.
 
 use crate::brute_force::cases::{Cutter, any_tool};
-use proptest::prelude::*;
 use sweepsim_motion::{Profile, ProfileSegment, Taper, Tool, Turn};
+use sweepsim_props::*;
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
     ProfileSegment::Line { to: [rho, zeta] }
@@ -11,8 +11,8 @@ fn line(rho: f64, zeta: f64) -> ProfileSegment {
 /// A body whose outline is a rational spline, and a neck on it; and both alone, the neck from inside the body.
 pub fn spline_tools() -> impl Strategy<Value = [Tool; 3]> {
     let knots = 3_usize..5;
-    let radii = prop::collection::vec(0.8..2.4, 5);
-    let weights = prop::collection::vec(0.5..2.0, 5);
+    let radii = collection::vec(0.8..2.4, 5);
+    let weights = collection::vec(0.5..2.0, 5);
     (knots, radii, weights, 0.3..0.7).prop_map(|(degree, radii, weights, neck)| {
         // Heights ascend, so that the outline does not cross itself.
         let points: Vec<[f64; 2]> = radii

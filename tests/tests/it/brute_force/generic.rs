@@ -2,9 +2,9 @@
 
 use crate::brute_force::cases::{Case, any_tool, axis, concave, free_window, pose, tip, turned};
 use crate::brute_force::judge::{Tally, for_all, judge};
-use proptest::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::Method;
+use sweepsim_props::*;
 
 /// In general position hardly any end lies on a wall within the tolerance of vertical, and hardly any on a seam.
 fn assert_clean(tally: &Tally) {
@@ -80,7 +80,7 @@ fn translations_of_a_tilted_tool() {
 
 #[test]
 fn paths_of_many_moves() {
-    let poses = prop::collection::vec((tip(), axis(0.0..60.0)), 3..7);
+    let poses = collection::vec((tip(), axis(0.0..60.0)), 3..7);
     let cases = (any_tool(), poses, free_window()).prop_map(|(cutter, poses, window)| Case {
         cutter,
         poses: poses.into_iter().map(|(tip, axis)| pose(tip, axis)).collect(),

@@ -2,13 +2,13 @@
 
 use crate::brute_force::cases::Case;
 use crate::brute_force::sample::times;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim::{Method, Options, Sweep, sweep};
 use sweepsim_dexel::{End, Grid, Interval, Source};
 use sweepsim_motion::{Path, Pose, Profile, Tool};
+use sweepsim_props::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
+use sweepsim_props::*;
 use sweepsim_tests::oracle::{Depth, Motion, Outline, Sampling, Span, SweptLine, Verdict, compare, swept_line};
 
 /// The default tolerance of a sweep.

@@ -3,11 +3,11 @@
 use crate::brute_force::cases::{Case, any_tool, axis, free_window, pose, tip, turned};
 use crate::brute_force::judge::{Tally, for_all, judge, same_volume, swept};
 use nalgebra::{Rotation3, Vector3};
-use proptest::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Pose;
+use sweepsim_props::*;
 use sweepsim_tests::oracle::Motion;
 
 fn five_axis() -> impl Strategy<Value = Case> {
@@ -116,7 +116,7 @@ fn a_right_angle_about_z_turns_the_volume() {
 /// The volume of a path is the union of the volumes of its moves.
 #[test]
 fn a_path_is_the_union_of_its_moves() {
-    let more = prop::collection::vec((tip(), axis(0.0..60.0)), 1..4);
+    let more = collection::vec((tip(), axis(0.0..60.0)), 1..4);
     let cases = (five_axis(), more).prop_map(|(mut case, more)| {
         case.poses.extend(more.into_iter().map(|(tip, axis)| pose(tip, axis)));
         case

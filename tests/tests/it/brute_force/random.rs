@@ -9,12 +9,12 @@ use crate::brute_force::judge::{Tally, same_sweeps, swept_along};
 use crate::brute_force::sample::times;
 use crate::brute_force::splines::Splines;
 use nalgebra::{Matrix3, Vector3};
-use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use std::fmt;
 use sweepsim::{Method, Sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, RotaryTable, TipArc, TipCourse, Tool, Turning};
+use sweepsim_props::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
+use sweepsim_props::*;
 use sweepsim_tests::oracle::Motion;
 
 /// A motion of one kind.
@@ -137,7 +137,7 @@ fn place() -> impl Strategy<Value = [f64; 3]> {
 }
 
 fn moves() -> impl Strategy<Value = Drawn> {
-    let places = prop::collection::vec((place(), axis(0.0..60.0)), 2..4);
+    let places = collection::vec((place(), axis(0.0..60.0)), 2..4);
     let even = places.prop_map(|places| {
         let poses: Vec<Pose> = places.into_iter().map(|(tip, axis)| pose(tip, axis)).collect();
         let moves = vec![Move::straight(Turning::Even); poses.len() - 1];
@@ -182,8 +182,8 @@ fn on(arc: &TipArc, from: [f64; 3]) -> [f64; 3] {
 
 fn splines() -> impl Strategy<Value = Drawn> {
     let turn = prop::array::uniform4(-0.35..0.35).prop_map(|[w, x, y, z]: [f64; 4]| [1.0 + w, x, y, z]);
-    let turns = prop::collection::vec(turn, 2..5);
-    let tips = prop::collection::vec((place(), 0.6..1.6), 2..5);
+    let turns = collection::vec(turn, 2..5);
+    let tips = collection::vec((place(), 0.6..1.6), 2..5);
     (turns, tips, any::<bool>(), any::<bool>()).prop_map(|(turns, tips, inner_turn, inner_tip)| {
         // With an inner knot the degree is one less.
         let knots = |count: usize, inner: bool, at: f64| {

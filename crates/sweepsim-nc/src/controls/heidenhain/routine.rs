@@ -108,7 +108,7 @@ fn own(text: &KeptText, index: usize) -> (Line, bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// The blocks as they come to be when all lines are read in order: lines that belong to the block above have no words.
     fn in_order(lines: &[&str]) -> Vec<Vec<String>> {
@@ -137,11 +137,11 @@ mod tests {
     proptest! {
         #[test]
         fn blocks_read_one_by_one_are_those_read_in_order(
-            lines in prop::collection::vec(prop::sample::select(vec![
+            lines in collection::vec(prop::sample::select(vec![
                 "L X+1 ~", "L Y+2", "Q200=2 ~", "Q201=-15", "CYCL DEF 200 DRILLING ~", "CYCL DEF 203 Q1=2", "~", "",
                 "; a comment", "CYCL DEF 7.0 DATUM", "LBL 1", "Q5=3 ~",
             ]), 0..40),
-            from in prop::collection::vec(0..40_usize, 40),
+            from in collection::vec(0..40_usize, 40),
         ) {
             let text = lines.iter().map(|line| format!("{line}\n")).collect();
             let routine = Routine::new(0, Rc::new(text));

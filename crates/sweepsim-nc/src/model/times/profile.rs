@@ -221,7 +221,7 @@ impl Stretches {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn stretch() -> impl Strategy<Value = Stretch> {
         let acceleration = prop_oneof![9 => 1.0..4e3_f64, 1 => Just(f64::INFINITY)];
@@ -282,7 +282,7 @@ mod tests {
 
         /// Times that are settled before the end are those that the whole path gives, to the last bit; slow ones, too, which are settled late.
         #[test]
-        fn settled_times_are_those_of_the_whole(stretches in proptest::collection::vec(stretch(), 1..9_000), slow in any::<bool>(), repeat in 1..8_usize, smoothing in prop_oneof![Just(0.0), 0.0..0.2_f64]) {
+        fn settled_times_are_those_of_the_whole(stretches in collection::vec(stretch(), 1..9_000), slow in any::<bool>(), repeat in 1..8_usize, smoothing in prop_oneof![Just(0.0), 0.0..0.2_f64]) {
             let mut stretches = stretches;
             if slow {
                 for stretch in &mut stretches {

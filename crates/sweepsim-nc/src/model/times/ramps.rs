@@ -205,7 +205,7 @@ impl Leg {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     /// Moves from rest to rest by hand: `(length, speed, acceleration, jerk)` and seconds, in all four cases.
     #[test]

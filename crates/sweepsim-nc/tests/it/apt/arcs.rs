@@ -1,10 +1,10 @@
 //! Arcs, against an evaluation of their own.
 
 use super::{exact, read, tips};
-use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{ReadOptions, apt, shortest};
+use sweepsim_props::*;
 
 fn angle(text: &str) -> f64 {
     let program = exact(text);
@@ -92,7 +92,7 @@ proptest! {
         radius in 0.5..200.0_f64,
         turn in 0.02..6.26_f64,
         rise in -5.0..5.0_f64,
-        inch: bool,
+        inch in any::<bool>(),
     ) {
         prop_assume!(normal.iter().map(|c| c * c).sum::<f64>() > 0.01);
         let n = unit(normal);

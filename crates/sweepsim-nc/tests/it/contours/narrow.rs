@@ -1,7 +1,7 @@
 //! Slots that three or more moves make narrower than the tool.
 
-use proptest::prelude::*;
 use sweepsim_nc::{Controller, ReadOptions, gcode};
+use sweepsim_props::*;
 
 use super::{Dialect, contour_program, options, read};
 use crate::pieces::{Piece, samples};
@@ -34,7 +34,7 @@ proptest! {
 
     /// A warning if, and only if, the tool comes nearer than its radius to the contour, by sampling.
     #[test]
-    fn narrow_necks_are_noticed(width in 1.0..12.0_f64, radius in 0.5..4.0_f64, waist in -8.0..8.0_f64, klartext: bool) {
+    fn narrow_necks_are_noticed(width in 1.0..12.0_f64, radius in 0.5..4.0_f64, waist in -8.0..8.0_f64, klartext in any::<bool>()) {
         let dialect = if klartext { Dialect::Klartext } else { Dialect::Siemens { meetings: false } };
         let contour = bottle(width, waist);
         let text = contour_program(&contour, true, dialect);

@@ -1,7 +1,7 @@
 //! No text makes the reader panic, hang, or take memory without bound.
 
-use proptest::prelude::*;
 use sweepsim_nc::{ReadOptions, apt};
+use sweepsim_props::*;
 
 use super::{Random, number, seeds};
 
@@ -101,7 +101,7 @@ fn try_all(text: &str) {
 
 proptest! {
     #[test]
-    fn no_text_panics(from in prop::collection::vec(any::<u8>(), 0..120), noise in ".{0,40}") {
+    fn no_text_panics(from in collection::vec(any::<u8>(), 0..120), noise in ".{0,40}") {
         let text = text(&from);
         try_all(&text);
         try_all(&format!("{noise}{text}"));

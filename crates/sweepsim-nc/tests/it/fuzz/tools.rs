@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use proptest::prelude::*;
 use sweepsim_nc::{ReadOptions, gcode, tools};
+use sweepsim_props::*;
 
 use super::{Random, number, seeds};
 
@@ -21,7 +21,7 @@ fn try_text(text: &str) -> bool {
 
 proptest! {
     #[test]
-    fn no_tool_file_panics(noise in ".{0,60}", keys in prop::collection::vec(0..12_usize, 0..12), value in -1e3..1e3_f64) {
+    fn no_tool_file_panics(noise in ".{0,60}", keys in collection::vec(0..12_usize, 0..12), value in -1e3..1e3_f64) {
         let names = ["data", "tools", "parameter", "geometry", "DC", "LCF", "type", "shape", "units", "length", "diameter", "post-process"];
         let fields: Vec<String> = keys.iter().map(|&k| format!("{:?}: {}", names[k], if k < 4 { "[{}]".into() } else { value.to_string() })).collect();
         for text in [noise.clone(), format!("T1 {noise}"), format!("{{{}}}", fields.join(", ")), format!("{{\"data\": [{{{}}}]}}", fields.join(", "))] {

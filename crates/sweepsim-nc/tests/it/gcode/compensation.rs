@@ -1,8 +1,8 @@
 //! Cutter compensation against offsets computed independently.
 
-use proptest::prelude::*;
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Controller, ReadOptions, ToolOffset, gcode};
+use sweepsim_props::*;
 
 use super::{assert_near, options, program, program_with, tips};
 use crate::pieces::{Piece, distance_to_point, polygon, rounded_rectangle, samples, star};
@@ -67,7 +67,7 @@ proptest! {
 
     #[test]
     fn the_tool_keeps_its_distance_from_polygons(
-        radii in prop::collection::vec(20.0..30.0_f64, 4..9),
+        radii in collection::vec(20.0..30.0_f64, 4..9),
         left in any::<bool>(),
         reverse in any::<bool>(),
         radius in 0.1..1.0_f64,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::algebra::ranges::range_of;
-use proptest::prelude::*;
+use sweepsim_props::*;
 
 /// `N` and `M` one after the other, and their derivatives: what a velocity along an axis, or a turn about it, makes of them.
 fn lists(direct: &Direct, at: [f64; 2]) -> [[f64; 6]; 3] {
@@ -31,7 +31,7 @@ proptest! {
     #[test]
     fn products_of_derivatives_are_the_normals(
         degrees in prop_oneof![Just([3, 3]), [1_usize..5, 1_usize..5]], rational in any::<bool>(), at in [0.0..=1.0, 0.0..=1.0],
-        bumps in proptest::collection::vec(-0.08..0.08, 25), weights in proptest::collection::vec(0.6..1.6, 25),
+        bumps in collection::vec(-0.08..0.08, 25), weights in collection::vec(0.6..1.6, 25),
         centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
     ) {
         let [p, q] = degrees;
@@ -70,7 +70,7 @@ proptest! {
     /// The same on flat patches, anywhere: at poles as well, where nothing is divided.
     #[test]
     fn flat_normals_are_those_of_the_forms(
-        degrees in prop_oneof![Just([3, 3]), [1_usize..5, 1_usize..5]], rational in any::<bool>(), has_pole in any::<bool>(), weights in proptest::collection::vec(0.6..1.6, 25),
+        degrees in prop_oneof![Just([3, 3]), [1_usize..5, 1_usize..5]], rational in any::<bool>(), has_pole in any::<bool>(), weights in collection::vec(0.6..1.6, 25),
         at in [0.0..=1.0, 0.0..=1.0], on_side in any::<bool>(), centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
         tilt in (0_usize..3, -1.0..1.0, -1.0..1.0),
     ) {
@@ -113,8 +113,8 @@ proptest! {
     /// The same where a side has shrunk to a point, and the normals are divided by the distance from it.
     #[test]
     fn normals_near_a_pole_are_those_of_the_forms(
-        upper in any::<bool>(), bumps in proptest::collection::vec(-0.08..0.08, 16), at in [0.0..=1.0, 0.0..=1.0],
-        rational in any::<bool>(), weights in proptest::collection::vec(0.9..1.1, 16), pole in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
+        upper in any::<bool>(), bumps in collection::vec(-0.08..0.08, 16), at in [0.0..=1.0, 0.0..=1.0],
+        rational in any::<bool>(), weights in collection::vec(0.9..1.1, 16), pole in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
     ) {
         // A sector about a line along z: v is the distance from the pole, or 1 less it. The pole may be far from the origin.
         let far = |i: usize| (if upper { 3 - i / 4 } else { i / 4 }) as f64 / 3.0;

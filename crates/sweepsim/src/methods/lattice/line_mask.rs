@@ -62,11 +62,11 @@ impl LineMask {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         #[test]
-        fn counts_are_those_of_the_list(marked in prop::collection::btree_set((0_usize..9, 0_usize..7), 1..20),
+        fn counts_are_those_of_the_list(marked in collection::btree_set((0_usize..9, 0_usize..7), 1..20),
             a in 0_usize..9, b in 0_usize..9, c in 0_usize..7, d in 0_usize..7) {
             let grid = Grid::new([0.0; 2], [9.0, 7.0], [9, 7]).unwrap();
             let lines = marked.iter().map(|(i, j)| grid.index(*i, *j).unwrap() as u32);

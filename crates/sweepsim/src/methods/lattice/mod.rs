@@ -237,7 +237,7 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn by_all(lattice: &Lattice, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
         let [from, to] = if axis == 0 { lattice.i } else { lattice.j };

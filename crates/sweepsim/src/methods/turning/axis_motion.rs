@@ -185,8 +185,8 @@ impl Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::Pose;
+    use sweepsim_props::*;
 
     proptest! {
         /// Derivatives are those of differences, and within their bounds.

@@ -116,8 +116,8 @@ impl Lean {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_motion::{Pose, Segment};
+    use sweepsim_props::*;
 
     proptest! {
         /// Both ways to the coordinates at a time agree.

@@ -268,7 +268,7 @@ impl VerticalArc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// Parts are no longer than 90°, do not pass an extreme but for slivers, and are all of the arc.

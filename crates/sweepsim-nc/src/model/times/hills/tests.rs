@@ -1,7 +1,7 @@
 //! Courses of random paths against those without a bound of the jerk, and lines in parts.
 
 use super::*;
-use proptest::prelude::*;
+use sweepsim_props::*;
 
 fn stretch() -> impl Strategy<Value = Stretch> {
     let corner = prop_oneof![1 => Just(0.0), 4 => 0.0..1e4_f64, 9 => Just(f64::INFINITY)];
@@ -42,7 +42,7 @@ proptest! {
 
     /// Nowhere faster than without a bound of the jerk, but as fast with a large one; faster than with a rest at each joint.
     #[test]
-    fn the_course_is_below_that_without_a_bound(stretches in proptest::collection::vec(stretch(), 1..40)) {
+    fn the_course_is_below_that_without_a_bound(stretches in collection::vec(stretch(), 1..40)) {
         let squares = squares(&stretches);
         let found = passed(&stretches, &squares);
         prop_assert_eq!(found.len(), stretches.len());
@@ -71,7 +71,7 @@ proptest! {
 
     /// A line takes the same time in one stretch or in several, to the place on it.
     #[test]
-    fn a_line_in_parts_is_a_line(whole in stretch(), shares in proptest::collection::vec(0.01..1.0_f64, 1..30)) {
+    fn a_line_in_parts_is_a_line(whole in stretch(), shares in collection::vec(0.01..1.0_f64, 1..30)) {
         let sum: f64 = shares.iter().sum();
         let part = |share: &f64| Stretch { length: whole.length * share / sum, corner: f64::INFINITY, ..whole };
         let parts: Vec<_> = shares.iter().map(part).collect();

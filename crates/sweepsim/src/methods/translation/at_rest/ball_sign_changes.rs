@@ -138,7 +138,7 @@ impl Lune {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     fn side() -> impl Strategy<Value = Neighbour> {
         let part = || prop_oneof![3 => -1.0..1.0_f64, 1 => Just(0.0), 1 => -1e-9..1e-9_f64];

@@ -168,8 +168,8 @@ pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[AtRestSide; 2]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-    use proptest::test_runner::TestCaseResult;
+    use sweepsim_props::test_runner::TestCaseResult;
+    use sweepsim_props::*;
 
     fn side() -> impl Strategy<Value = AtRestSide> {
         let moving = ([-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], -12..1i32);

@@ -331,7 +331,7 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use sweepsim_props::*;
 
     proptest! {
         /// The region for a range of `p` holds those for all of its values.

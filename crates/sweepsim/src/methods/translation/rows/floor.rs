@@ -70,8 +70,8 @@ impl Floor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use sweepsim_dexel::Grid;
+    use sweepsim_props::*;
 
     proptest! {
         /// A window has lines if one is in it, however narrow the window is, and however near to others.

@@ -347,8 +347,8 @@ impl Curve for Crossing<'_> {
 mod tests {
     use super::*;
     use crate::cutter::outline::{self, Piece};
-    use proptest::prelude::*;
     use std::f64::consts::PI;
+    use sweepsim_props::*;
 
     proptest! {
         /// `h` is half the derivative of `ρ² − x²` by the arc's length, `h′` that of `h`, and both are within their bounds.

@@ -255,8 +255,8 @@ impl Curve for Lengthwise<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use std::f64::consts::PI;
+    use sweepsim_props::*;
 
     fn pieces() -> impl Strategy<Value = Piece> {
         let shape = (-1.0..4.0_f64, 0.1..4.0_f64, -PI..PI, 0.1..6.0_f64).prop_map(|(centre, tube, from, angle)| {

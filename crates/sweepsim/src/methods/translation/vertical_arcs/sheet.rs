@@ -276,8 +276,8 @@ impl Parallel<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
     use std::f64::consts::PI;
+    use sweepsim_props::*;
 
     fn sheets() -> impl Strategy<Value = Sheet> {
         let torus = (-4.0..4.0_f64, 0.1..4.0_f64, any::<bool>()).prop_map(|(centre, tube, up)| Sheet {

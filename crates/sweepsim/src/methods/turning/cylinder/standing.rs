@@ -107,14 +107,14 @@ pub(in crate::methods::turning) fn standing(
 mod tests {
     use super::*;
     use crate::methods::turning::axis_motion::AxisMotion;
-    use proptest::prelude::*;
     use sweepsim_motion::{Pose, Segment};
+    use sweepsim_props::*;
 
     proptest! {
         /// No line through a point where the wall slides along itself is missed.
         #[test]
         fn lines_that_cross_are_kept(tips in [[-4.0..4.0_f64, -4.0..4.0, -4.0..4.0], [-4.0..4.0, -4.0..4.0, -4.0..4.0]], axes in [[-1.0..1.0_f64, -1.0..1.0], [-1.0..1.0, -1.0..1.0]],
-            scales in [-4.0..-1.0_f64, -3.0..0.0], down in any::<bool>(), points in prop::collection::vec([0.0..1.0_f64, 0.0..1.0], 1..40)) {
+            scales in [-4.0..-1.0_f64, -3.0..0.0], down in any::<bool>(), points in collection::vec([0.0..1.0_f64, 0.0..1.0], 1..40)) {
             let [lean, share] = scales.map(|exponent| 10f64.powf(exponent));
             let axis = |n: usize| [lean * axes[n][0], lean * axes[n][1], if down { -1.0 } else { 1.0 }];
             let tip = |n: usize| [0, 1, 2].map(|k| tips[0][k] + share * n as f64 * (tips[1][k] - tips[0][k]));

@@ -4,9 +4,9 @@ use super::super::cylinder::Cylinder;
 use super::*;
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
-use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use sweepsim_motion::{Pose, Segment};
+use sweepsim_props::test_runner::TestCaseResult;
+use sweepsim_props::*;
 
 /// What is said of a line during a span, against samples of the span.
 fn agrees<S: Shell>(
@@ -100,7 +100,7 @@ proptest! {
     #[test]
     fn what_is_certain_is_so(tips in [[-4.0..4.0_f64, -4.0..4.0, -4.0..4.0], [-4.0..4.0, -4.0..4.0, -4.0..4.0]],
         axes in [[-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], [-1.0..1.0, -1.0..1.0, 0.1..1.0]],
-        near in 0.01..1.0_f64, ends in [0.0..1.0_f64, 0.0..1.0], lines in prop::collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
+        near in 0.01..1.0_f64, ends in [0.0..1.0_f64, 0.0..1.0], lines in collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
         let axis = |n: usize| [0, 1, 2].map(|k| axes[0][k] + near * n as f64 * (axes[1][k] - axes[0][k]));
         let [from, to] = [0, 1].map(|n| Pose::new(tips[n], axis(n)).unwrap());
         let segment = &Segment::between(&from, &to)[0];
