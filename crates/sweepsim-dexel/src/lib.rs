@@ -45,6 +45,14 @@ pub use mesh::{
 pub use stock::{Stock, StockError};
 pub use tri::{SurfaceEnd, SurfaceEnds, TriDexels, TriDexelsError};
 
+/// What tests look at from outside; no promise is made of it. Such tests are not compiled along with a second library.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::mesh::nearest_on;
+    pub use crate::surface::{Step, steps, surface_within};
+    pub use crate::tri::contour::contour;
+}
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -75,6 +75,13 @@ pub use sweepsim_solve as solve;
 pub use sweepsim_solve::Monitor;
 pub use sweepsim_spline as spline;
 
+/// What tests look at from outside; no promise is made of it. Such tests are not compiled along with a second library.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::methods::lattice::LineMask;
+    pub use crate::verify::solid::MovingSolid;
+}
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -392,6 +392,3 @@ impl Dexels {
         (self.iter().map(|(_, line)| line.length()).sum::<f64>() + 0.0) * dx * dy
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -15,7 +15,7 @@ mod thicken;
 use crate::grid::Frame;
 pub use analytic::{AnalyticSurface, FaceSurfaces};
 pub use cluster::ClusteredMesh;
-pub use distance::{DistanceTo, Nearest, NearestTriangle};
+pub use distance::{DistanceTo, Nearest, NearestTriangle, nearest_on};
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 use thiserror::Error;

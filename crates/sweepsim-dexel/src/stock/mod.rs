@@ -355,6 +355,3 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
         }
     }))
 }
-
-#[cfg(test)]
-mod tests;

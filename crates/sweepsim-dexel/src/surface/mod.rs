@@ -35,7 +35,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 pub(crate) use sources::sources_in;
 use square::Square;
-pub(crate) use steps::{Step, steps};
+pub use steps::{Step, steps};
 
 /// Cosine of 40°: a triangle does not share a vertex whose normal is farther than this from its own.
 const CRISP: f64 = 0.766;
@@ -91,7 +91,7 @@ impl Dexels {
 }
 
 /// The surface, if it needs at most this many vertices.
-fn surface_within(dexels: &Dexels, most: usize) -> Result<Mesh, MeshError> {
+pub fn surface_within(dexels: &Dexels, most: usize) -> Result<Mesh, MeshError> {
     check_vertices(2 * dexels.count(), most)?;
     let field = Field::new(dexels);
     let outline = Outline::new(&field);
@@ -383,6 +383,3 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
         [0.0, 0.0, 1.0]
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -30,7 +30,8 @@ pub(crate) fn disagreements(solid: &TriDexels) -> usize {
     Lattice::new(solid).disagreements
 }
 
-pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
+/// The closed surface, if it needs at most this many vertices.
+pub fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
     faces_of(&Lattice::new(solid), most, false).map(|(mesh, _)| mesh)
 }
 
@@ -324,7 +325,3 @@ impl Face<'_> {
             .collect()
     }
 }
-
-#[cfg(test)]
-#[path = "tests.rs"]
-mod tests;

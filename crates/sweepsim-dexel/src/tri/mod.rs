@@ -1,7 +1,7 @@
 //! Dexels along all three axes.
 
 mod cell;
-mod contour;
+pub mod contour;
 mod ends;
 mod lattice;
 mod plane;

@@ -19,7 +19,7 @@ const TOGETHER: usize = 64;
 
 /// Swept intervals of some lines, sorted by line, and the lines that stayed unresolved.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SweptLines {
+pub struct SweptLines {
     pub lines: Vec<(u32, Vec<Interval>)>,
     pub unresolved: Vec<UnresolvedDexel>,
     /// The number of crossings.
@@ -59,7 +59,7 @@ type Repaired = Result<Vec<Interval>, UnresolvedReason>;
 
 /// What a line is solved again with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Repair {
+pub struct Repair {
     /// The first attempt.
     pub attempt: usize,
     /// The number of boxes for all attempts.

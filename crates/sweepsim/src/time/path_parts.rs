@@ -10,12 +10,12 @@ use sweepsim_motion::{Path, Segment};
 
 /// A motion, and its place in the path.
 #[derive(Clone, Debug)]
-pub(crate) struct PathPart {
+pub struct PathPart {
     pub segment: Segment,
     /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
-    pub level_arc: Option<LevelArc>,
+    pub(crate) level_arc: Option<LevelArc>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
-    pub vertical_arc: Option<VerticalArc>,
+    pub(crate) vertical_arc: Option<VerticalArc>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -24,7 +24,7 @@ pub(crate) struct PathPart {
     /// Whether it is a whole straight move without rotation along which the tip's displacement grows, so that the next one may be [joined](super::joined) to it.
     pub joins: bool,
     /// Those that it consists of, if they are several.
-    pub joined: Vec<Stretch>,
+    pub(crate) joined: Vec<Stretch>,
 }
 
 impl PathPart {
@@ -45,7 +45,7 @@ impl PathPart {
 
 /// A tool, and how it is searched.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Kind {
+pub struct Kind {
     /// Whether it is symmetric about its axis.
     pub symmetric: bool,
     /// Whether all of it is searched in closed form.

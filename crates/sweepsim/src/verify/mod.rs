@@ -25,7 +25,7 @@ mod regions;
 mod run;
 mod scene;
 mod search;
-mod solid;
+pub(crate) mod solid;
 mod target;
 
 pub use deviation::{

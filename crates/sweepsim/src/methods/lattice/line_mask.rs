@@ -4,7 +4,7 @@ use sweepsim_dexel::Grid;
 
 /// Some lines of a grid, with counts over rectangles in constant time (a summed-area table over the smallest window that holds them).
 #[derive(Clone, Debug)]
-pub(crate) struct LineMask {
+pub struct LineMask {
     /// The first and the last column and row of the window.
     pub window: [[usize; 2]; 2],
     /// Counts over `[first, first + a) × [first, first + b)` of the window, row by row of `a`.

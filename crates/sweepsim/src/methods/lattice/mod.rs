@@ -2,7 +2,7 @@
 
 mod line_mask;
 
-pub(crate) use line_mask::LineMask;
+pub use line_mask::LineMask;
 
 use sweepsim_dexel::Grid;
 use sweepsim_solve::{ChartTarget, Enclosure, Targets};

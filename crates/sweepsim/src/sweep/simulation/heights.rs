@@ -7,7 +7,7 @@ const BLOCK: usize = 16;
 
 /// The lowest and the highest material of each line, and of blocks of lines. Since stock only shrinks, an old state stays an upper bound.
 #[derive(Clone, Debug)]
-pub(crate) struct HeightMap {
+pub struct HeightMap {
     cells: [usize; 2],
     lines: Vec<[f64; 2]>,
     /// The widest gap of each line at first, NaN without one; empty if no line has one.

@@ -7,6 +7,7 @@ mod deviation;
 mod regions;
 mod removal;
 mod setups;
+mod solids;
 mod standing;
 mod threads;
 mod tiles;

@@ -1,8 +1,10 @@
-use super::*;
-use crate::grid::{Frame, Grid};
-use crate::mesh::{MeshError, TriangleSoup};
-use crate::stock::Stock;
+use crate::common::{dot, normal_of, unit};
+use sweepsim_dexel::internals::surface_within;
+use sweepsim_dexel::*;
 use sweepsim_props::*;
+
+/// Cosine of 40°: a triangle does not share a vertex whose normal is farther than this from its own.
+const CRISP: f64 = 0.766;
 
 fn soup(mesh: &Mesh) -> TriangleSoup {
     TriangleSoup {
@@ -58,7 +60,7 @@ fn filled(n: usize, mut line: impl FnMut(usize, usize) -> Vec<(f64, f64)>) -> De
     for i in 0..n {
         for j in 0..n {
             let intervals: Vec<Interval> = line(i, j).iter().map(|(a, b)| Interval::between(*a, *b)).collect();
-            dexels.set(dexels.grid().number(i, j), &intervals).unwrap();
+            dexels.set(i * n + j, &intervals).unwrap();
         }
     }
     dexels
@@ -342,8 +344,9 @@ proptest! {
             }
         }
         let mesh = Mesh { cut: vec![true; places.len()], vertices: places, ..Mesh::default() };
+        let sources = TriDexels::from_sets(sets).unwrap().sources(&mesh);
         let far = |end: &([f64; 3], Source), p: &[f64; 3]| (0..3).map(|k| (end.0[k] - p[k]).powi(2)).sum::<f64>().sqrt();
-        for (place, found) in mesh.vertices.iter().zip(sources_in(&sets.each_ref(), &mesh)) {
+        for (place, found) in mesh.vertices.iter().zip(sources) {
             let least = ends.iter().map(|end| far(end, place)).fold(f64::INFINITY, f64::min);
             match ends.iter().find(|end| end.1 == found) {
                 Some(end) => prop_assert!(far(end, place) <= least + 1e-9, "{place:?}"),

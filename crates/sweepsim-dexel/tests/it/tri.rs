@@ -1,5 +1,6 @@
-use crate::{Mesh, Stock, TriDexels, TriangleSoup};
 use std::collections::BTreeMap;
+use sweepsim_dexel::internals::contour;
+use sweepsim_dexel::*;
 use sweepsim_props::*;
 
 /// Every edge has two triangles, in opposite directions; the triangles around a vertex are one fan.
@@ -298,7 +299,7 @@ proptest! {
     fn volumes_converge(stock in csg()) {
         // The true volume, from many lines: for a slab 1 thick and 9 wide they are within 1.5 %, less than the
         // tolerance below.
-        let grid = crate::Grid::new([-10.0; 2], [10.0; 2], [1501, 1501]).unwrap();
+        let grid = Grid::new([-10.0; 2], [10.0; 2], [1501, 1501]).unwrap();
         let whole = Stock::Block { min: [-10.0; 3], max: [10.0; 3] };
         let exact = Stock::Intersection(vec![whole, stock.clone()]).dexels(&grid).unwrap().volume();
         let mesh = solid(72, &stock).surface().unwrap();
@@ -325,7 +326,6 @@ proptest! {
     /// Random points: every kind of cell beside every other.
     #[test]
     fn any_lattice_gives_a_manifold(seed in any::<u64>(), share in 1..8_u32) {
-        use crate::{Dexels, Interval};
         const N: usize = 6;
         let filled = |p: [usize; 3]| {
             let hash = (p[0] * N * N + p[1] * N + p[2]) as u64;
@@ -333,8 +333,8 @@ proptest! {
             (mixed >> 40) % 8 < u64::from(share)
         };
         let set = |axis: usize| {
-            let grid = crate::Grid::new([0.0; 2], [N as f64; 2], [N; 2]).unwrap();
-            let grid = grid.in_frame(crate::Frame::cyclic(axis));
+            let grid = Grid::new([0.0; 2], [N as f64; 2], [N; 2]).unwrap();
+            let grid = grid.in_frame(Frame::cyclic(axis));
             Dexels::from_fn(grid, |index, line| {
                 let (i, j) = grid.place(index);
                 for n in 0..N {
@@ -362,8 +362,8 @@ fn more_vertices_than_numbers_are_an_error() {
     let solid = TriDexels::new([-5.0; 3], [5.0; 3], [9; 3], &ball).unwrap();
     let whole = solid.surface().unwrap();
     let count = whole.vertices.len();
-    assert_eq!(super::contour(&solid, count), Ok(whole));
+    assert_eq!(contour(&solid, count), Ok(whole));
     for most in [0, 1, count / 2, count - 1] {
-        assert!(super::contour(&solid, most).is_err(), "{most}");
+        assert!(contour(&solid, most).is_err(), "{most}");
     }
 }

@@ -1,5 +1,5 @@
-use super::*;
-use crate::grid::Frame;
+use std::sync::Arc;
+use sweepsim_dexel::*;
 
 fn grid() -> Grid {
     Grid::new([-10.0, -10.0], [10.0, 10.0], [100, 100]).unwrap()

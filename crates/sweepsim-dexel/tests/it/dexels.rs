@@ -1,6 +1,4 @@
-use super::*;
-use crate::intervals::{Crossing, Source};
-use crate::stock::Stock;
+use sweepsim_dexel::*;
 use sweepsim_props::*;
 
 fn grid(cells: [usize; 2]) -> Grid {
