@@ -42,7 +42,7 @@ pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [JointSid
     [before, twist(segment, SegmentEnd::Start, &turn)]
 }
 
-impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
+impl Search<'_> {
     /// Settles what it can of the placement of a tool between two moves without rotation, or arcs with which it turns.
     fn placed_in_closed_form(
         &self,
@@ -104,7 +104,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
-    pub fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
+    pub fn placed<'a>(
+        &self,
+        method: &impl CrossingMethod<'a>,
+        (at, end): (usize, SegmentEnd),
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
         space.done.placed.fill(false);
         let segment = &self.parts[at].segment;
         let (pose, source) = match end {
@@ -137,8 +143,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                 })
             });
             let query = self.query((at, (DyadicInterval::WHOLE, ROOT.1)), number);
-            self.method
-                .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
+            method.on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
             if cells.trim() {
                 space.grazing.forget(number);
             }

@@ -20,9 +20,10 @@ use sweepsim_motion::{Segment, SegmentEnd};
 use sweepsim_solve::{CancelOnly, ChartMap, Monitor, Preimage, Sink};
 
 /// A search of some lines along some parts of a path.
+///
+/// Only what calls a [method](CrossingMethod) depends on it, so that closed forms are compiled once.
 #[derive(Clone)]
-pub(crate) struct Search<'a, M> {
-    pub method: &'a M,
+pub(crate) struct Search<'a> {
     pub cutter: &'a Cutter,
     pub parts: &'a [PathPart],
     /// The tool and the window of all lines: of each motion, only the part in which it is over them is searched.
@@ -42,9 +43,9 @@ pub(crate) struct Search<'a, M> {
     pub monitor: &'a dyn Monitor,
 }
 
-impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
+impl Search<'_> {
     /// The crossings of a part: its envelope and edges, the kink or cap at its start, and the cap at the end of the last part.
-    pub fn part(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
+    pub fn part<'a>(&self, method: &impl CrossingMethod<'a>, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let segment = &self.parts[at].segment;
         if !self.reaches(segment) {
             return;
@@ -69,15 +70,15 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             } else {
                 times.place(part.from, part.to())
             };
-            self.patches((at, (part, piece)), &mut times, space, harvest);
-            self.edges((at, (part, piece)), &mut times, space, harvest);
+            self.patches(method, (at, (part, piece)), &mut times, space, harvest);
+            self.edges(method, (at, (part, piece)), &mut times, space, harvest);
             for leftover in leftovers {
                 self.leftover(at, &leftover, &mut times, space, harvest);
             }
         }
-        self.placed(at, SegmentEnd::Start, space, harvest);
+        self.placed(method, (at, SegmentEnd::Start), space, harvest);
         if at + 1 == self.parts.len() {
-            self.placed(at, SegmentEnd::Finish, space, harvest);
+            self.placed(method, (at, SegmentEnd::Finish), space, harvest);
         }
         if let Some(ceiling) = self.ceiling {
             harvest.keep_below(mark, ceiling.z, self.height_tolerance);
@@ -259,8 +260,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
-    fn patches(
+    fn patches<'a>(
         &self,
+        method: &impl CrossingMethod<'a>,
         (at, within): (usize, (DyadicInterval, u32)),
         times: &mut Times,
         space: &mut Workspace,
@@ -273,7 +275,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             }
             let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);
             let query = self.query((at, within), number);
-            self.method.on_patch(query, &mut map, &mut space.solvers, &mut sink);
+            method.on_patch(query, &mut map, &mut space.solvers, &mut sink);
             drop(sink);
             times.trim(mark);
             space.trim_patch(number);
@@ -302,8 +304,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
-    fn edges(
+    fn edges<'a>(
         &self,
+        method: &impl CrossingMethod<'a>,
         (at, within): (usize, (DyadicInterval, u32)),
         times: &mut Times,
         space: &mut Workspace,
@@ -316,7 +319,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             }
             let (mut map, mut sink) = self.edge((at, number), times, &mut space.edges, harvest);
             let query = self.query((at, within), number);
-            self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
+            method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
             drop(sink);
             times.trim(mark);
             space.edges[number].trim();

@@ -167,14 +167,8 @@ impl SweepJob<'_> {
         }
     }
 
-    fn search<'b, M>(
-        &'b self,
-        method: &'b M,
-        (parts, over): (&'b [PathPart], Over),
-        lines: &'b Lattice<'b>,
-    ) -> Search<'b, M> {
+    fn search<'b>(&'b self, (parts, over): (&'b [PathPart], Over), lines: &'b Lattice<'b>) -> Search<'b> {
         Search {
-            method,
             cutter: self.cutter,
             parts,
             over,
@@ -210,7 +204,7 @@ impl SweepJob<'_> {
                     closed: self.method == Method::Mixed,
                     outline: self.outline(),
                     ceiling: self.ceiling.as_ref(),
-                    ..self.search(&method, (chunk, over), &lines)
+                    ..self.search((chunk, over), &lines)
                 };
                 let mut harvest = Harvest {
                     crossings: self.list(),
@@ -221,7 +215,7 @@ impl SweepJob<'_> {
                         if self.monitor.cancelled() {
                             break;
                         }
-                        search.part(at, space, &mut harvest);
+                        search.part(&method, at, space, &mut harvest);
                     }
                 });
                 harvest
@@ -267,7 +261,7 @@ impl SweepJob<'_> {
         let by_charts = Search {
             closed: false,
             outline: None,
-            ..self.search(&Charts, (&parts, over), &lines)
+            ..self.search((&parts, over), &lines)
         };
         let search = Search {
             closed: self.method == Method::Mixed && attempt <= IN_CLOSED_FORM,
@@ -279,12 +273,12 @@ impl SweepJob<'_> {
                 break;
             }
             let (crossings, open) = (harvest.crossings.len(), harvest.open.len());
-            search.part(at, space, harvest);
+            search.part(&Charts, at, space, harvest);
             let in_both = attempt == IN_CLOSED_FORM && (search.closed || search.outline.is_some());
             if in_both && harvest.open.len() > open {
                 harvest.crossings.truncate(crossings);
                 harvest.open.truncate(open);
-                by_charts.part(at, space, harvest);
+                by_charts.part(&Charts, at, space, harvest);
             }
             if harvest.statistics.boxes > most {
                 return false;
