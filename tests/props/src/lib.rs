@@ -1,8 +1,8 @@
 //! proptest with a runner that is compiled once.
 //!
-//! The runner of proptest is generic over the strategy and the test: made anew for every property, it was a third of what
-//! test crates compile. Here values travel in boxes. `proptest!` takes what tests of this workspace write: functions of
-//! `pattern in strategy`, with an optional configuration.
+//! The runner of proptest is generic over the strategy and the test: made anew for every property, it is a third of
+//! what test crates compile. Here values travel in boxes. `proptest!` takes what tests of this workspace write:
+//! functions of `pattern in strategy`, with an optional configuration.
 
 use std::any::Any;
 use std::fmt::{self, Debug, Formatter};

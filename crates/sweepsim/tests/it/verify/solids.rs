@@ -9,7 +9,8 @@ use sweepsim_props::*;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A flat end on a level circle, in parts down to a few millionths of it: nothing stays open, and lines well inside are swept.
+    /// A flat end on a level circle, in parts down to a few millionths of it: nothing stays open, and lines well inside
+    /// are swept.
     #[test]
     fn short_parts_of_level_motions_are_certified(radius in 5.0..12.0_f64, at in 0.0..0.99_f64, halvings in 8_i32..30) {
         let at_rest = Pose::new([4.0 + radius, 3.0, -7.0], [0.0, 0.0, 1.0]).unwrap();
