@@ -141,6 +141,12 @@ impl<'a> Lattice<'a> {
         number
     }
 
+    /// Whether every line of the window is asked for.
+    #[inline]
+    pub fn asks_for_all(&self) -> bool {
+        self.mask.is_none()
+    }
+
     /// Whether a line is asked for.
     #[inline]
     pub fn asks(&self, i: usize, j: usize) -> bool {

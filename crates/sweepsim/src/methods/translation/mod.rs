@@ -29,7 +29,7 @@ pub(crate) use rows::numbers;
 pub(crate) use straight::sweep_straight;
 pub(crate) use vertical_arcs::sweep_vertical_arc;
 
-use crate::methods::harvest::Harvest;
+use crate::methods::harvest::{Harvest, Numbered};
 use crate::methods::lattice::Lattice;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_solve::Cause;
@@ -50,6 +50,20 @@ impl Collector<'_> {
             source,
         };
         self.harvest.crossings.push((line as u32, crossing));
+    }
+
+    /// Crossings of neighbouring lines of a column, one each, from line `j` on.
+    #[inline]
+    pub fn run(&mut self, [i, j]: [usize; 2], crossings: impl ExactSizeIterator<Item = Crossing>) {
+        let lines = self.lines;
+        let first = lines.line(i, j) as u32;
+        let numbered = (first..).zip(crossings);
+        if lines.asks_for_all() {
+            self.harvest.crossings.extend(numbered);
+        } else {
+            let asked = |(line, _): &Numbered| lines.asks(i, j + (line - first) as usize);
+            self.harvest.crossings.extend(numbered.filter(asked));
+        }
     }
 
     /// Leaves a line to the general method.

@@ -1,10 +1,11 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
 use super::curves::{Graph, GraphCrossing, Heading, ring, slant, torus};
-use super::rows::{Floor, Row, rows};
+use super::rows::{Floor, Row, numbers, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use sweepsim_dexel::Source;
+use std::ops::Range;
+use sweepsim_dexel::{Crossing, Source};
 
 /// A strip narrower than this many margins is not searched: its lines are open.
 const NARROW: f64 = 16.0;
@@ -50,16 +51,16 @@ struct Strip<'a, 'b, S> {
     lanes: Lanes,
 }
 
-/// Lines of a row, and those of them that the strip meets beyond doubt: how far along the row, `p`, and the way there.
+/// Lines of a row.
 struct Lanes {
     p: [f64; LANES],
-    q: [f64; LANES],
+    /// `q`, then how far it is beyond the curve.
+    ahead: [f64; LANES],
     curve: [f64; LANES],
     /// What the curve keeps of each.
     own: [f64; LANES],
-    place: [usize; LANES],
-    met: [f64; LANES],
-    ahead: [f64; LANES],
+    /// Whether the strip meets it beyond doubt.
+    met: [bool; LANES],
     points: [GraphCrossing; LANES],
 }
 
@@ -68,12 +69,10 @@ impl Default for Lanes {
         let none = [0.0; LANES];
         Self {
             p: none,
-            q: none,
+            ahead: none,
             curve: none,
             own: none,
-            place: [0; LANES],
-            met: none,
-            ahead: none,
+            met: [false; LANES],
             points: [GraphCrossing::default(); LANES],
         }
     }
@@ -213,81 +212,99 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
                 Some(heading.slack * (2.0 + steepest))
             }),
         };
-        let lattice = self.lines.lines;
-        rows(lattice, &floor(heading), [wide, reach], |Row { i, j, x }| {
-            let mut first = j[0];
-            while first <= j[1] {
-                let last = j[1].min(first + LANES - 1);
-                self.row(graph, &part, (i, x), [first, last]);
-                first = last + 1;
+        let (lattice, floor) = (self.lines.lines, floor(heading));
+        let Some([lowest, highest]) = numbers(lattice, 1, floor.extent(1, [wide, reach])) else {
+            return;
+        };
+        // Of all columns.
+        let y: Vec<f64> = (lowest..=highest)
+            .map(|j| lattice.coordinate(1, j) - heading.tip[1])
+            .collect();
+        rows(lattice, &floor, [wide, reach], |Row { i, j, x }| {
+            let mut first = j[0].max(lowest);
+            let end = (j[1] + 1).min(highest + 1);
+            while first < end {
+                let next = end.min(first + LANES);
+                self.row(graph, &part, (i, x), first, &y[first - lowest..next - lowest]);
+                first = next;
             }
         });
     }
 
-    /// Some lines of one column.
+    /// Some lines of one column, from number `first` on.
     #[inline]
-    fn row<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, x): (usize, f64), [first, last]: [usize; 2]) {
+    fn row<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, x): (usize, f64), first: usize, y: &[f64]) {
         let heading = self.heading;
-        let lattice = self.lines.lines;
-        let count = last + 1 - first;
         let [ux, uy] = heading.ahead;
         let (p_base, q_base) = (-uy * x, ux * x);
-        let lanes = &mut self.lanes;
-        for (k, (p, q)) in lanes.p.iter_mut().zip(&mut lanes.q).take(count).enumerate() {
-            let y = lattice.coordinate(1, first + k) - heading.tip[1];
-            (*p, *q) = (p_base + ux * y, q_base + uy * y);
-        }
+        let place = |y: f64| [p_base + ux * y, q_base + uy * y];
         let StripPart { wide, sure, .. } = part;
         let (Some(error), Some(jump)) = (part.error, part.jump) else {
-            for k in 0..count {
-                let [p, q] = [self.lanes.p[k], self.lanes.q[k]];
+            for (k, y) in y.iter().enumerate() {
+                let [p, q] = place(*y);
                 if p >= wide[0] && p < wide[1] {
                     self.one(graph, part, (i, first + k), [p, q]);
                 }
             }
             return;
         };
-        graph.many_q(&lanes.p[..count], &mut lanes.curve[..count], &mut lanes.own[..count]);
+        let count = y.len();
+        let Lanes { p, ahead, curve, own, met, .. } = &mut self.lanes;
+        let (p, ahead, curve) = (&mut p[..count], &mut ahead[..count], &mut curve[..count]);
+        for ((p, q), y) in p.iter_mut().zip(&mut *ahead).zip(y) {
+            [*p, *q] = place(*y);
+        }
+        graph.many_q(p, curve, &mut own[..count]);
         let doubt = error.max(part.blurs[0]).max(part.blurs[1]);
-        let mut met = 0;
+        let (nearest, farthest) = (-doubt, heading.length + doubt);
+        let end = heading.length - error;
         let mut doubtful = 0;
-        for k in 0..count {
-            let (p, ahead) = (lanes.p[k], lanes.q[k] - lanes.curve[k]);
-            let certain = (ahead > error) & (ahead < heading.length - error) & (p >= sure[0]) & (p < sure[1]);
-            // Written always, kept if certain.
-            (lanes.place[met], lanes.met[met], lanes.ahead[met]) = (first + k, p, ahead);
-            lanes.own[met] = lanes.own[k];
-            met += usize::from(certain);
+        for (((p, ahead), curve), met) in p.iter().zip(&mut *ahead).zip(curve).zip(&mut met[..count]) {
+            *ahead -= *curve;
+            *met = (*ahead > error) & (*ahead < end) & (*p >= sure[0]) & (*p < sure[1]);
             // NaN is near.
-            let near = !(ahead <= -doubt) & !(ahead >= heading.length + doubt) & (p >= wide[0]) & (p < wide[1]);
-            doubtful += usize::from(near & !certain);
+            let near = !(*ahead <= nearest) & !(*ahead >= farthest) & (*p >= wide[0]) & (*p < wide[1]);
+            doubtful += usize::from(near & !*met);
         }
         if doubtful > 0 {
-            for k in 0..count {
-                let (p, ahead) = (self.lanes.p[k], self.lanes.q[k] - self.lanes.curve[k]);
-                let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
-                let near = !(ahead <= -doubt || ahead >= heading.length + doubt) && p >= wide[0] && p < wide[1];
-                if near && !certain {
-                    self.one(graph, part, (i, first + k), [p, self.lanes.q[k]]);
+            for (k, y) in y.iter().enumerate() {
+                let (ahead, [p, q]) = (self.lanes.ahead[k], place(*y));
+                let near = !(ahead <= nearest || ahead >= farthest) && p >= wide[0] && p < wide[1];
+                if near && !self.lanes.met[k] {
+                    self.one(graph, part, (i, first + k), [p, q]);
                 }
             }
         }
-        if met == 0 || jump == 0 {
+        if jump == 0 {
             return;
         }
-        let lanes = &mut self.lanes;
-        graph.many(&lanes.met[..met], &lanes.own[..met], &mut lanes.points[..met]);
-        let rate = heading.length.recip();
-        for k in 0..met {
-            if lattice.asks(i, lanes.place[k]) {
-                let t = lanes.ahead[k] * rate;
-                let GraphCrossing { z, normal } = lanes.points[k];
-                let z = heading.tip[2] + t * heading.way[2] + z;
-                let line = lattice.line(i, lanes.place[k]);
-                let normal = heading.unit_in_space(normal);
-                self.lines.crossing(line, z, jump, normal, (self.source)(t));
-            }
+        let mut begin = 0;
+        while let Some(next) = (begin..count).find(|k| self.lanes.met[*k]) {
+            let end = (next..count).find(|k| !self.lanes.met[*k]).unwrap_or(count);
+            self.run(graph, jump, (i, first + next), next..end);
+            begin = end;
         }
+    }
+
+    /// Neighbouring lines that the strip meets, from line `j` of a column on.
+    #[inline]
+    fn run<G: Graph>(&mut self, graph: &G, jump: i8, (i, j): (usize, usize), lanes: Range<usize>) {
+        let heading = self.heading;
+        let Lanes { p, ahead, own, points, .. } = &mut self.lanes;
+        let points = &mut points[..lanes.len()];
+        graph.many(&p[lanes.clone()], &own[lanes.clone()], points);
+        let rate = heading.length.recip();
+        let source = &self.source;
+        let crossings = points.iter().zip(&ahead[lanes]).map(|(point, ahead)| {
+            let t = ahead * rate;
+            Crossing {
+                z: heading.tip[2] + t * heading.way[2] + point.z,
+                jump,
+                normal: heading.unit_in_space(point.normal),
+                source: source(t),
+            }
+        });
+        self.lines.run([i, j], crossings);
     }
 
     /// One line, which may be near an end of the span, or of the way.

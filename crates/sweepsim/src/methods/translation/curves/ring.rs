@@ -333,9 +333,11 @@ impl Graph for Ring {
     }
 
     fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]) {
+        // By value: nothing that is written here can change it.
+        let ring = *self;
         for ((p, q), own) in p.iter().zip(q).zip(own) {
-            let [c, s] = self.turn(*p);
-            *q = self.centre[0] + (c * self.first[0] + s * self.second[0]);
+            let [c, s] = ring.turn(*p);
+            *q = ring.centre[0] + (c * ring.first[0] + s * ring.second[0]);
             *own = s;
         }
     }
