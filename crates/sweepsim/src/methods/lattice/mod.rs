@@ -153,6 +153,15 @@ impl<'a> Lattice<'a> {
         self.mask.is_none_or(|mask| mask.contains(i, j))
     }
 
+    /// As [`asks`](Self::asks), of a line with this number.
+    #[inline]
+    pub fn asks_for(&self, line: u32) -> bool {
+        self.mask.is_none_or(|mask| {
+            let (i, j) = self.grid.place(line as usize);
+            mask.contains(i, j)
+        })
+    }
+
     /// The number of a line.
     #[inline]
     pub fn line(&self, i: usize, j: usize) -> usize {

@@ -52,17 +52,15 @@ impl Collector<'_> {
         self.harvest.crossings.push((line as u32, crossing));
     }
 
-    /// Crossings of neighbouring lines of a column, one each, from line `j` on.
+    /// Crossings of numbered lines, of those that are asked for.
     #[inline]
-    pub fn run(&mut self, [i, j]: [usize; 2], crossings: impl ExactSizeIterator<Item = Crossing>) {
+    pub fn crossings(&mut self, numbered: impl Iterator<Item = Numbered>) {
         let lines = self.lines;
-        let first = lines.line(i, j) as u32;
-        let numbered = (first..).zip(crossings);
         if lines.asks_for_all() {
             self.harvest.crossings.extend(numbered);
         } else {
-            let asked = |(line, _): &Numbered| lines.asks(i, j + (line - first) as usize);
-            self.harvest.crossings.extend(numbered.filter(asked));
+            let asked = numbered.filter(|(line, _)| lines.asks_for(*line));
+            self.harvest.crossings.extend(asked);
         }
     }
 

@@ -1,10 +1,9 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::curves::{Graph, GraphCrossing, Heading, ring, slant, torus};
+use super::curves::{Graph, Heading, ring, slant, torus};
 use super::rows::{Floor, Row, numbers, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use std::ops::Range;
 use sweepsim_dexel::{Crossing, Source};
 
 /// A strip narrower than this many margins is not searched: its lines are open.
@@ -13,7 +12,7 @@ const NARROW: f64 = 16.0;
 const PARTS: f64 = 16.0;
 /// A part is about as long as the way, or this many lines.
 const LINES: f64 = 6.0;
-/// Lines of a row that are computed together.
+/// Lines that are computed together.
 const LANES: usize = 64;
 
 /// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
@@ -51,30 +50,56 @@ struct Strip<'a, 'b, S> {
     lanes: Lanes,
 }
 
-/// Lines of a row.
+/// Lines that are computed together, of any columns.
 struct Lanes {
+    count: usize,
+    line: [u32; LANES],
     p: [f64; LANES],
-    /// `q`, then how far it is beyond the curve.
+    q: [f64; LANES],
+    /// How far `q` is beyond the curve.
     ahead: [f64; LANES],
-    curve: [f64; LANES],
     /// What the curve keeps of each.
     own: [f64; LANES],
     /// Whether the strip meets it beyond doubt.
     met: [bool; LANES],
-    points: [GraphCrossing; LANES],
+    /// Of those that are met: time, height and normal.
+    t: [f64; LANES],
+    z: [f64; LANES],
+    normal: [[f32; LANES]; 3],
 }
 
 impl Default for Lanes {
     fn default() -> Self {
         let none = [0.0; LANES];
         Self {
+            count: 0,
+            line: [0; LANES],
             p: none,
+            q: none,
             ahead: none,
-            curve: none,
             own: none,
             met: [false; LANES],
-            points: [GraphCrossing::default(); LANES],
+            t: none,
+            z: none,
+            normal: [[0.0; LANES]; 3],
         }
+    }
+}
+
+impl Lanes {
+    /// Adds lines from this one on, with these values of `y`: as many as there is room for, and returns how many.
+    #[inline]
+    fn add(&mut self, line: u32, y: &[f64], place: impl Fn(f64) -> [f64; 2]) -> usize {
+        let places = self.p[self.count..].iter_mut().zip(&mut self.q[self.count..]);
+        for ((p, q), y) in places.zip(y) {
+            [*p, *q] = place(*y);
+        }
+        for (own, line) in self.line[self.count..].iter_mut().zip(line..).take(y.len()) {
+            *own = line;
+        }
+        let added = y.len().min(LANES - self.count);
+        self.count += added;
+        added
     }
 }
 
@@ -220,95 +245,103 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         let y: Vec<f64> = (lowest..=highest)
             .map(|j| lattice.coordinate(1, j) - heading.tip[1])
             .collect();
+        let [ux, uy] = heading.ahead;
         rows(lattice, &floor, [wide, reach], |Row { i, j, x }| {
-            let mut first = j[0].max(lowest);
-            let end = (j[1] + 1).min(highest + 1);
-            while first < end {
-                let next = end.min(first + LANES);
-                self.row(graph, &part, (i, x), first, &y[first - lowest..next - lowest]);
-                first = next;
+            let (p_base, q_base) = (-uy * x, ux * x);
+            let place = |y: f64| [p_base + ux * y, q_base + uy * y];
+            let (mut next, end) = (j[0].max(lowest), (j[1] + 1).min(highest + 1));
+            while next < end {
+                let line = lattice.line(i, next) as u32;
+                next += self.lanes.add(line, &y[next - lowest..end - lowest], place);
+                if self.lanes.count == LANES {
+                    self.settle(graph, &part);
+                }
             }
         });
+        self.settle(graph, &part);
     }
 
-    /// Some lines of one column, from number `first` on.
-    #[inline]
-    fn row<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, x): (usize, f64), first: usize, y: &[f64]) {
+    /// The lines that have been added.
+    fn settle<G: Graph>(&mut self, graph: &G, part: &StripPart) {
         let heading = self.heading;
-        let [ux, uy] = heading.ahead;
-        let (p_base, q_base) = (-uy * x, ux * x);
-        let place = |y: f64| [p_base + ux * y, q_base + uy * y];
         let StripPart { wide, sure, .. } = part;
+        let count = std::mem::take(&mut self.lanes.count);
         let (Some(error), Some(jump)) = (part.error, part.jump) else {
-            for (k, y) in y.iter().enumerate() {
-                let [p, q] = place(*y);
+            for k in 0..count {
+                let [p, q] = [self.lanes.p[k], self.lanes.q[k]];
                 if p >= wide[0] && p < wide[1] {
-                    self.one(graph, part, (i, first + k), [p, q]);
+                    self.one(graph, part, self.lanes.line[k], [p, q]);
                 }
             }
             return;
         };
-        let count = y.len();
-        let Lanes { p, ahead, curve, own, met, .. } = &mut self.lanes;
-        let (p, ahead, curve) = (&mut p[..count], &mut ahead[..count], &mut curve[..count]);
-        for ((p, q), y) in p.iter_mut().zip(&mut *ahead).zip(y) {
-            [*p, *q] = place(*y);
-        }
-        graph.many_q(p, curve, &mut own[..count]);
+        let lanes = &mut self.lanes;
+        let (p, q, ahead, met) = (
+            &lanes.p[..count],
+            &lanes.q[..count],
+            &mut lanes.ahead[..count],
+            &mut lanes.met[..count],
+        );
+        graph.many_q(p, ahead, &mut lanes.own[..count]);
         let doubt = error.max(part.blurs[0]).max(part.blurs[1]);
-        let (nearest, farthest) = (-doubt, heading.length + doubt);
-        let end = heading.length - error;
+        let (end, near, far) = (heading.length - error, -doubt, heading.length + doubt);
         let mut doubtful = 0;
-        for (((p, ahead), curve), met) in p.iter().zip(&mut *ahead).zip(curve).zip(&mut met[..count]) {
-            *ahead -= *curve;
+        for (((p, q), ahead), met) in p.iter().zip(q).zip(&mut *ahead).zip(met) {
+            *ahead = q - *ahead;
             *met = (*ahead > error) & (*ahead < end) & (*p >= sure[0]) & (*p < sure[1]);
-            // NaN is near.
-            let near = !(*ahead <= nearest) & !(*ahead >= farthest) & (*p >= wide[0]) & (*p < wide[1]);
-            doubtful += usize::from(near & !*met);
+            // NaN is close.
+            let close = !(*ahead <= near) & !(*ahead >= far) & (*p >= wide[0]) & (*p < wide[1]);
+            doubtful += usize::from(close & !*met);
         }
         if doubtful > 0 {
-            for (k, y) in y.iter().enumerate() {
-                let (ahead, [p, q]) = (self.lanes.ahead[k], place(*y));
-                let near = !(ahead <= nearest || ahead >= farthest) && p >= wide[0] && p < wide[1];
-                if near && !self.lanes.met[k] {
-                    self.one(graph, part, (i, first + k), [p, q]);
+            for k in 0..count {
+                let (ahead, [p, q]) = (self.lanes.ahead[k], [self.lanes.p[k], self.lanes.q[k]]);
+                let close = !(ahead <= near || ahead >= far) && p >= wide[0] && p < wide[1];
+                if close && !self.lanes.met[k] {
+                    self.one(graph, part, self.lanes.line[k], [p, q]);
                 }
             }
         }
-        if jump == 0 {
-            return;
-        }
-        let mut begin = 0;
-        while let Some(next) = (begin..count).find(|k| self.lanes.met[*k]) {
-            let end = (next..count).find(|k| !self.lanes.met[*k]).unwrap_or(count);
-            self.run(graph, jump, (i, first + next), next..end);
-            begin = end;
+        if jump != 0 {
+            self.met(graph, jump, count);
         }
     }
 
-    /// Neighbouring lines that the strip meets, from line `j` of a column on.
-    #[inline]
-    fn run<G: Graph>(&mut self, graph: &G, jump: i8, (i, j): (usize, usize), lanes: Range<usize>) {
+    /// The crossings of those lines that the strip meets, with this jump.
+    fn met<G: Graph>(&mut self, graph: &G, jump: i8, count: usize) {
         let heading = self.heading;
-        let Lanes { p, ahead, own, points, .. } = &mut self.lanes;
-        let points = &mut points[..lanes.len()];
-        graph.many(&p[lanes.clone()], &own[lanes.clone()], points);
+        let lanes = &mut self.lanes;
+        let mut met = 0;
+        for k in 0..count {
+            // Written always, kept if it is met.
+            (lanes.line[met], lanes.p[met]) = (lanes.line[k], lanes.p[k]);
+            (lanes.ahead[met], lanes.own[met]) = (lanes.ahead[k], lanes.own[k]);
+            met += usize::from(lanes.met[k]);
+        }
+        let (ahead, t, z) = (&lanes.ahead[..met], &mut lanes.t[..met], &mut lanes.z[..met]);
+        let [a, b, c] = &mut lanes.normal;
+        let [a, b, c] = [&mut a[..met], &mut b[..met], &mut c[..met]];
         let rate = heading.length.recip();
-        let source = &self.source;
-        let crossings = points.iter().zip(&ahead[lanes]).map(|(point, ahead)| {
-            let t = ahead * rate;
-            Crossing {
-                z: heading.tip[2] + t * heading.way[2] + point.z,
-                jump,
-                normal: heading.unit_in_space(point.normal),
-                source: source(t),
-            }
+        graph.many(&lanes.p[..met], &lanes.own[..met], |k, point| {
+            t[k] = ahead[k] * rate;
+            z[k] = heading.tip[2] + t[k] * heading.way[2] + point.z;
+            [a[k], b[k], c[k]] = heading.unit_in_space(point.normal);
         });
-        self.lines.run([i, j], crossings);
+        let source = &self.source;
+        let crossings = lanes.line[..met].iter().enumerate().map(|(k, line)| {
+            let crossing = Crossing {
+                z: z[k],
+                jump,
+                normal: [a[k], b[k], c[k]],
+                source: source(t[k]),
+            };
+            (*line, crossing)
+        });
+        self.lines.crossings(crossings);
     }
 
     /// One line, which may be near an end of the span, or of the way.
-    fn one<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, j): (usize, usize), [p, q]: [f64; 2]) {
+    fn one<G: Graph>(&mut self, graph: &G, part: &StripPart, line: u32, [p, q]: [f64; 2]) {
         let heading = self.heading;
         let lattice = self.lines.lines;
         let StripPart {
@@ -320,8 +353,8 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         if p < sure[0] || p >= sure[1] {
             let end = usize::from(p >= sure[0]);
             let ahead = q - graph.at(p.clamp(*low, *high)).q;
-            if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks(i, j) {
-                self.lines.open(lattice.line(i, j));
+            if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks_for(line) {
+                self.lines.open(line as usize);
             }
             return;
         }
@@ -331,10 +364,10 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         if ahead < -error || ahead > heading.length + error || (point.jump == 0 && point.certain) {
             return;
         }
-        if !lattice.asks(i, j) {
+        if !lattice.asks_for(line) {
             return;
         }
-        let line = lattice.line(i, j);
+        let line = line as usize;
         // NaN is uncertain.
         if !(point.certain && ahead > error && ahead < heading.length - error) {
             self.lines.open(line);

@@ -71,12 +71,12 @@ pub(crate) trait Graph {
     /// there may be any numbers.
     fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]);
 
-    /// Heights and normals at many values, between two of which all jumps are the same, and not 0.
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]);
+    /// Calls `each` with the numbers of many values and what is there; between two of them all jumps are the same, and not 0.
+    fn many(&self, p: &[f64], own: &[f64], each: impl FnMut(usize, GraphCrossing));
 }
 
 /// What a crossing has of a graph.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct GraphCrossing {
     pub z: f64,
     /// As that of a [`GraphPoint`].

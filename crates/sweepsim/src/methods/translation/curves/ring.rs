@@ -342,18 +342,20 @@ impl Graph for Ring {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
-        let values = p.iter().zip(own);
-        let turn = |(p, s): (&f64, &f64)| [((p - self.centre[1]) / self.width).clamp(-1.0, 1.0), *s];
-        match &self.role {
+    fn many(&self, p: &[f64], own: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
+        let ring = *self;
+        let values = p.iter().zip(own).enumerate();
+        let turn = |p: f64, s: f64| [((p - ring.centre[1]) / ring.width).clamp(-1.0, 1.0), s];
+        match ring.role {
             Role::Ball { out, .. } => {
-                for (value, point) in values.zip(points) {
-                    let [c, s] = turn(value);
-                    let arm = along(&self.first.map(|x| c * x), s, &self.second);
-                    *point = GraphCrossing {
-                        z: self.centre[2] + arm[2],
+                for (k, (p, s)) in values {
+                    let [c, s] = turn(*p, *s);
+                    let arm = along(&ring.first.map(|x| c * x), s, &ring.second);
+                    let point = GraphCrossing {
+                        z: ring.centre[2] + arm[2],
                         normal: arm.map(|x| out * x),
                     };
+                    each(k, point);
                 }
             }
             Role::Rim {
@@ -364,16 +366,17 @@ impl Graph for Ring {
                 axis,
                 ..
             } => {
-                for (value, point) in values.zip(points) {
-                    let turn = turn(value);
-                    let arm = along(&self.first.map(|x| turn[0] * x), turn[1], &self.second);
-                    let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
+                for (k, (p, s)) in values {
+                    let [c, s] = turn(*p, *s);
+                    let arm = along(&ring.first.map(|x| c * x), s, &ring.second);
+                    let cosine = azimuth[0] * c + azimuth[1] * s;
                     let [a, b] = rates.map(|[ahead, up]| ahead * cosine + up);
-                    let [n, m] = fan_normal(normals, [a, b]);
-                    *point = GraphCrossing {
-                        z: self.centre[2] + arm[2],
-                        normal: along(&arm.map(|x| x * n / radius), m, axis),
+                    let [n, m] = fan_normal(&normals, [a, b]);
+                    let point = GraphCrossing {
+                        z: ring.centre[2] + arm[2],
+                        normal: along(&arm.map(|x| x * n / radius), m, &axis),
                     };
+                    each(k, point);
                 }
             }
         }

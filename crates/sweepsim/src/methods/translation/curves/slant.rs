@@ -103,12 +103,14 @@ impl Graph for Slant {
         }
     }
 
-    fn many(&self, p: &[f64], _: &[f64], points: &mut [GraphCrossing]) {
-        for (p, point) in p.iter().zip(points) {
-            *point = GraphCrossing {
-                z: self.place(*p)[1],
-                normal: self.normal,
+    fn many(&self, p: &[f64], _: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
+        let slant = *self;
+        for (k, p) in p.iter().enumerate() {
+            let point = GraphCrossing {
+                z: slant.place(*p)[1],
+                normal: slant.normal,
             };
+            each(k, point);
         }
     }
 }

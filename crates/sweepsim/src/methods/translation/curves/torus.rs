@@ -313,15 +313,17 @@ impl Graph for Torus {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
-        let sign = self.out * self.signs[0];
-        for ((p, e), point) in p.iter().zip(own).zip(points) {
-            let [rho, f] = self.meridian(*e);
+    fn many(&self, p: &[f64], own: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
+        let torus = *self;
+        let sign = torus.out * torus.signs[0];
+        for (k, (p, e)) in p.iter().zip(own).enumerate() {
+            let [rho, f] = torus.meridian(*e);
             let across = sign * e;
-            *point = GraphCrossing {
-                z: self.centre[1] + self.radius * f,
-                normal: [-self.out * self.slope * f, across * (p / rho), self.out * f],
+            let point = GraphCrossing {
+                z: torus.centre[1] + torus.radius * f,
+                normal: [-torus.out * torus.slope * f, across * (p / rho), torus.out * f],
             };
+            each(k, point);
         }
     }
 }
