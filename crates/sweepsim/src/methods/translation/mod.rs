@@ -29,7 +29,7 @@ pub(crate) use rows::numbers;
 pub(crate) use straight::sweep_straight;
 pub(crate) use vertical_arcs::sweep_vertical_arc;
 
-use crate::methods::harvest::{Harvest, Numbered};
+use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_solve::Cause;
@@ -50,18 +50,6 @@ impl Collector<'_> {
             source,
         };
         self.harvest.crossings.push((line as u32, crossing));
-    }
-
-    /// Crossings of numbered lines, of those that are asked for.
-    #[inline]
-    pub fn crossings(&mut self, numbered: impl Iterator<Item = Numbered>) {
-        let lines = self.lines;
-        if lines.asks_for_all() {
-            self.harvest.crossings.extend(numbered);
-        } else {
-            let asked = numbered.filter(|(line, _)| lines.asks_for(*line));
-            self.harvest.crossings.extend(asked);
-        }
     }
 
     /// Leaves a line to the general method.

@@ -43,30 +43,31 @@ pub(super) struct Row {
 /// A condition `low ≤ base + rate y ≤ high` on `y`.
 #[derive(Clone, Copy)]
 struct Band {
+    /// First what is met at the lower `y`.
     range: [f64; 2],
     /// `1/rate`; 0 if it does not depend on `y`.
     inverse: f64,
 }
 
 impl Band {
-    fn new(range: [f64; 2], rate: f64) -> Self {
+    fn new([low, high]: [f64; 2], rate: f64) -> Self {
         let inverse = if rate == 0.0 { 0.0 } else { rate.recip() };
+        let range = if rate < 0.0 { [high, low] } else { [low, high] };
         Self { range, inverse }
     }
 
     /// The values of `y`, about.
     #[inline]
     fn values(&self, base: f64) -> [f64; 2] {
-        let [low, high] = self.range;
         if self.inverse == 0.0 {
+            let [low, high] = self.range;
             return if base >= low && base <= high {
                 [f64::NEG_INFINITY, f64::INFINITY]
             } else {
                 [f64::INFINITY, f64::NEG_INFINITY]
             };
         }
-        let (a, b) = ((low - base) * self.inverse, (high - base) * self.inverse);
-        [a.min(b), a.max(b)]
+        self.range.map(|end| (end - base) * self.inverse)
     }
 }
 

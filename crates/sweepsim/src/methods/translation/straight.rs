@@ -62,10 +62,11 @@ struct Lanes {
     own: [f64; LANES],
     /// Whether the strip meets it beyond doubt.
     met: [bool; LANES],
-    /// Of those that are met: time, height and normal.
+    /// Of those that are met: time, height, and the normal in the coordinates of the move and in space.
     t: [f64; LANES],
     z: [f64; LANES],
-    normal: [[f32; LANES]; 3],
+    normal: [[f64; LANES]; 3],
+    unit: [[f32; LANES]; 3],
 }
 
 impl Default for Lanes {
@@ -81,7 +82,8 @@ impl Default for Lanes {
             met: [false; LANES],
             t: none,
             z: none,
-            normal: [[0.0; LANES]; 3],
+            normal: [none; 3],
+            unit: [[0.0; LANES]; 3],
         }
     }
 }
@@ -302,9 +304,16 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
                 }
             }
         }
-        if jump != 0 {
-            self.met(graph, jump, count);
+        if jump == 0 {
+            return;
         }
+        let lattice = self.lines.lines;
+        if !lattice.asks_for_all() {
+            for k in 0..count {
+                self.lanes.met[k] &= lattice.asks_for(self.lanes.line[k]);
+            }
+        }
+        self.met(graph, jump, count);
     }
 
     /// The crossings of those lines that the strip meets, with this jump.
@@ -318,26 +327,36 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             (lanes.ahead[met], lanes.own[met]) = (lanes.ahead[k], lanes.own[k]);
             met += usize::from(lanes.met[k]);
         }
-        let (ahead, t, z) = (&lanes.ahead[..met], &mut lanes.t[..met], &mut lanes.z[..met]);
-        let [a, b, c] = &mut lanes.normal;
-        let [a, b, c] = [&mut a[..met], &mut b[..met], &mut c[..met]];
+        let Lanes {
+            p, own, ahead, t, z, ..
+        } = lanes;
+        let [q, left, up] = &mut lanes.normal;
+        let [q, left, up] = [&mut q[..met], &mut left[..met], &mut up[..met]];
+        let [a, b, c] = &mut lanes.unit;
+        let (t, z) = (&mut t[..met], &mut z[..met]);
+        graph.many(&p[..met], &own[..met], z, [q, left, up]);
         let rate = heading.length.recip();
-        graph.many(&lanes.p[..met], &lanes.own[..met], |k, point| {
-            t[k] = ahead[k] * rate;
-            z[k] = heading.tip[2] + t[k] * heading.way[2] + point.z;
-            [a[k], b[k], c[k]] = heading.unit_in_space(point.normal);
-        });
-        let source = &self.source;
+        for (t, ahead) in t.iter_mut().zip(ahead) {
+            *t = *ahead * rate;
+        }
+        for (z, t) in z.iter_mut().zip(&*t) {
+            *z += heading.tip[2] + t * heading.way[2];
+        }
+        let units = a.iter_mut().zip(b).zip(c);
+        for (((q, left), up), ((a, b), c)) in q.iter().zip(left).zip(up).zip(units) {
+            [*a, *b, *c] = heading.unit_in_space([*q, *left, *up]);
+        }
+        let ([a, b, c], source) = (&lanes.unit, &self.source);
         let crossings = lanes.line[..met].iter().enumerate().map(|(k, line)| {
             let crossing = Crossing {
-                z: z[k],
+                z: lanes.z[k],
                 jump,
                 normal: [a[k], b[k], c[k]],
-                source: source(t[k]),
+                source: source(lanes.t[k]),
             };
             (*line, crossing)
         });
-        self.lines.crossings(crossings);
+        self.lines.harvest.crossings.extend(crossings);
     }
 
     /// One line, which may be near an end of the span, or of the way.

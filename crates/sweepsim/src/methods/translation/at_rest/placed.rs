@@ -233,12 +233,10 @@ impl Placed<'_, '_> {
         let Some([low, high]) = numbers(lattice, 1, [ty - half, ty + half]) else {
             return;
         };
-        let first = low.max(*next);
-        if first <= high {
-            let lines = lattice.line(i, first) as u32..=lattice.line(i, high) as u32;
-            self.lines.crossings(lines.map(|line| (line, crossing)));
-            *next = high + 1;
-        }
+        let asked = (low.max(*next)..=high).filter(|j| lattice.asks(i, *j));
+        let numbered = asked.map(|j| (lattice.line(i, j) as u32, crossing));
+        self.lines.harvest.crossings.extend(numbered);
+        *next = (*next).max(high + 1);
     }
 
     /// The lines of a column near its ends and some places, and between those of them where the signs of `g` differ.

@@ -1,6 +1,6 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::{Heading, Local, along, dot};
 use crate::cutter::outline::{Rim, fan_normal};
 use std::f64::consts::PI;
@@ -342,20 +342,20 @@ impl Graph for Ring {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
+    fn many(&self, p: &[f64], own: &[f64], z: &mut [f64], [q, left, up]: [&mut [f64]; 3]) {
         let ring = *self;
-        let values = p.iter().zip(own).enumerate();
-        let turn = |p: f64, s: f64| [((p - ring.centre[1]) / ring.width).clamp(-1.0, 1.0), s];
+        let points = z.iter_mut().zip(q).zip(left).zip(up);
+        let values = p.iter().zip(own).zip(points);
+        let arm = |p: f64, s: f64| {
+            let c = ((p - ring.centre[1]) / ring.width).clamp(-1.0, 1.0);
+            ([c, s], along(&ring.first.map(|x| c * x), s, &ring.second))
+        };
         match ring.role {
             Role::Ball { out, .. } => {
-                for (k, (p, s)) in values {
-                    let [c, s] = turn(*p, *s);
-                    let arm = along(&ring.first.map(|x| c * x), s, &ring.second);
-                    let point = GraphCrossing {
-                        z: ring.centre[2] + arm[2],
-                        normal: arm.map(|x| out * x),
-                    };
-                    each(k, point);
+                for ((p, s), (((z, q), left), up)) in values {
+                    let (_, arm) = arm(*p, *s);
+                    *z = ring.centre[2] + arm[2];
+                    [*q, *left, *up] = arm.map(|x| out * x);
                 }
             }
             Role::Rim {
@@ -366,17 +366,13 @@ impl Graph for Ring {
                 axis,
                 ..
             } => {
-                for (k, (p, s)) in values {
-                    let [c, s] = turn(*p, *s);
-                    let arm = along(&ring.first.map(|x| c * x), s, &ring.second);
+                for ((p, s), (((z, q), left), up)) in values {
+                    let ([c, s], arm) = arm(*p, *s);
                     let cosine = azimuth[0] * c + azimuth[1] * s;
                     let [a, b] = rates.map(|[ahead, up]| ahead * cosine + up);
                     let [n, m] = fan_normal(&normals, [a, b]);
-                    let point = GraphCrossing {
-                        z: ring.centre[2] + arm[2],
-                        normal: along(&arm.map(|x| x * n / radius), m, &axis),
-                    };
-                    each(k, point);
+                    *z = ring.centre[2] + arm[2];
+                    [*q, *left, *up] = along(&arm.map(|x| x * n / radius), m, &axis);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The grazing curve of a cone or cylinder: two straight lines.
 
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::{Heading, Local};
 
 /// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
@@ -103,14 +103,12 @@ impl Graph for Slant {
         }
     }
 
-    fn many(&self, p: &[f64], _: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
-        let slant = *self;
-        for (k, p) in p.iter().enumerate() {
-            let point = GraphCrossing {
-                z: slant.place(*p)[1],
-                normal: slant.normal,
-            };
-            each(k, point);
+    fn many(&self, p: &[f64], _: &[f64], z: &mut [f64], normal: [&mut [f64]; 3]) {
+        for (p, z) in p.iter().zip(z) {
+            *z = self.place(*p)[1];
+        }
+        for (all, own) in normal.into_iter().zip(self.normal) {
+            all.fill(own);
         }
     }
 }

@@ -10,7 +10,7 @@
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
 use super::Heading;
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::newton::{middle, newton};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -313,17 +313,15 @@ impl Graph for Torus {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], mut each: impl FnMut(usize, GraphCrossing)) {
+    fn many(&self, p: &[f64], own: &[f64], z: &mut [f64], [q, left, up]: [&mut [f64]; 3]) {
         let torus = *self;
         let sign = torus.out * torus.signs[0];
-        for (k, (p, e)) in p.iter().zip(own).enumerate() {
+        let points = z.iter_mut().zip(q).zip(left).zip(up);
+        for ((p, e), (((z, q), left), up)) in p.iter().zip(own).zip(points) {
             let [rho, f] = torus.meridian(*e);
             let across = sign * e;
-            let point = GraphCrossing {
-                z: torus.centre[1] + torus.radius * f,
-                normal: [-torus.out * torus.slope * f, across * (p / rho), torus.out * f],
-            };
-            each(k, point);
+            *z = torus.centre[1] + torus.radius * f;
+            [*q, *left, *up] = [-torus.out * torus.slope * f, across * (p / rho), torus.out * f];
         }
     }
 }
