@@ -1,9 +1,12 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
+mod lanes;
+
 use super::curves::{Graph, Heading, ring, slant, torus};
 use super::rows::{Floor, Row, numbers, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
+use lanes::{LANES, Lanes};
 use sweepsim_dexel::{Crossing, Source};
 
 /// A strip narrower than this many margins is not searched: its lines are open.
@@ -12,8 +15,6 @@ const NARROW: f64 = 16.0;
 const PARTS: f64 = 16.0;
 /// A part is about as long as the way, or this many lines.
 const LINES: f64 = 6.0;
-/// Lines that are computed together.
-const LANES: usize = 64;
 
 /// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
 pub(crate) fn sweep_straight(
@@ -48,61 +49,6 @@ struct Strip<'a, 'b, S> {
     /// What is this high above the tip is above the ceiling at all times.
     highest: f64,
     lanes: Lanes,
-}
-
-/// Lines that are computed together, of any columns.
-struct Lanes {
-    count: usize,
-    line: [u32; LANES],
-    p: [f64; LANES],
-    q: [f64; LANES],
-    /// How far `q` is beyond the curve.
-    ahead: [f64; LANES],
-    /// What the curve keeps of each.
-    own: [f64; LANES],
-    /// Whether the strip meets it beyond doubt.
-    met: [bool; LANES],
-    /// Of those that are met: time, height, and the normal in the coordinates of the move and in space.
-    t: [f64; LANES],
-    z: [f64; LANES],
-    normal: [[f64; LANES]; 3],
-    unit: [[f32; LANES]; 3],
-}
-
-impl Default for Lanes {
-    fn default() -> Self {
-        let none = [0.0; LANES];
-        Self {
-            count: 0,
-            line: [0; LANES],
-            p: none,
-            q: none,
-            ahead: none,
-            own: none,
-            met: [false; LANES],
-            t: none,
-            z: none,
-            normal: [none; 3],
-            unit: [[0.0; LANES]; 3],
-        }
-    }
-}
-
-impl Lanes {
-    /// Adds lines from this one on, with these values of `y`: as many as there is room for, and returns how many.
-    #[inline]
-    fn add(&mut self, line: u32, y: &[f64], place: impl Fn(f64) -> [f64; 2]) -> usize {
-        let places = self.p[self.count..].iter_mut().zip(&mut self.q[self.count..]);
-        for ((p, q), y) in places.zip(y) {
-            [*p, *q] = place(*y);
-        }
-        for (own, line) in self.line[self.count..].iter_mut().zip(line..).take(y.len()) {
-            *own = line;
-        }
-        let added = y.len().min(LANES - self.count);
-        self.count += added;
-        added
-    }
 }
 
 /// What part of a strip is searched.
