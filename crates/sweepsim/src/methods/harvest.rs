@@ -93,9 +93,9 @@ impl Harvest {
         let near = |z: f64| !((z - height).abs() > height_tolerance);
         let is_kept = |(_, crossing): &Numbered| !near(crossing.z) && crossing.z < height;
         // Mostly all of them.
-        let plain = self.crossings[mark..].iter().take_while(|own| is_kept(own)).count();
-        let mut kept = mark + plain;
-        for at in kept..self.crossings.len() {
+        let first = mark + self.crossings[mark..].iter().take_while(|own| is_kept(own)).count();
+        let mut kept = first;
+        for at in first..self.crossings.len() {
             let (line, crossing) = self.crossings[at];
             if near(crossing.z) {
                 self.open.push((line, Cause::Smallest));
