@@ -96,31 +96,29 @@ impl Chunk {
         self.make_room(table.moves.len().min(2 * pieces.len()), out);
         numbers.clear();
         numbers.resize(table.moves.len(), u32::MAX);
+        let first = out.len();
+        out.extend_from_slice(pieces);
         let moves = &mut self.moves;
-        let mut end = |end: &Packed| {
-            let old = (end.source >> table.time) as usize;
-            if end.source == Packed::STOCK || old >= numbers.len() {
-                return Packed {
-                    source: Packed::STOCK,
-                    ..*end
-                };
+        for_sources(&mut out[first..], &mut [], |source| {
+            if *source == Packed::STOCK {
+                return;
             }
-            if numbers[old] == u32::MAX {
-                numbers[old] = moves.number(table.moves[old]);
+            let old = (*source >> table.time) as usize;
+            let Some(number) = numbers.get_mut(old) else {
+                *source = Packed::STOCK;
+                return;
+            };
+            if *number == u32::MAX {
+                *number = moves.number(table.moves[old]);
             }
-            let ticks = end.source & ((1 << table.time) - 1);
+            let ticks = *source & ((1 << table.time) - 1);
             let ticks = if moves.time < table.time {
                 ticks >> (table.time - moves.time)
             } else {
                 ticks << (moves.time - table.time)
             };
-            let source = numbers[old] << moves.time | ticks;
-            Packed { source, ..*end }
-        };
-        out.extend(pieces.iter().map(|piece| Interval {
-            lower: end(&piece.lower),
-            upper: end(&piece.upper),
-        }));
+            *source = *number << moves.time | ticks;
+        });
     }
 
     /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds

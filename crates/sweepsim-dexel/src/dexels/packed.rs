@@ -47,6 +47,7 @@ fn sign(c: i32) -> i32 {
 
 impl Octahedral {
     /// The nearest direction, or nearly so. A zero or non-finite vector is taken as up.
+    #[inline]
     pub fn new(normal: [f32; 3]) -> Self {
         let n = normal.map(f64::from);
         let size = n.iter().map(|c| c.abs()).sum::<f64>();

@@ -19,11 +19,24 @@ struct ByChunk<'a, T> {
 impl<'a, T: Sync> ByChunk<'a, T> {
     /// `lines`: their number in the grid.
     fn new(lists: &[&'a [(u32, T)]], lines: usize) -> Self {
-        let chunk_of = |(line, _): &(u32, T)| ((*line as usize) < lines).then_some(*line as usize / LINES);
         // The lists are long, and are read once here: lines of a chunk are often next to each other.
         let runs_of = |list: &&'a [(u32, T)]| -> Vec<(usize, Run<'a, T>)> {
-            let runs = list.chunk_by(|a, b| chunk_of(a) == chunk_of(b));
-            runs.filter_map(|run| Some((chunk_of(run.first()?)?, run))).collect()
+            let (mut runs, mut rest) = (Vec::new(), *list);
+            while let [(line, _), others @ ..] = rest {
+                let number = *line as usize / LINES;
+                let own = number * LINES..lines.min((number + 1) * LINES);
+                let is_own = |(line, _): &&(u32, T)| own.contains(&(*line as usize));
+                let count = rest.iter().take_while(is_own).count();
+                if count == 0 {
+                    // Beyond the grid.
+                    rest = others;
+                    continue;
+                }
+                let (run, after) = rest.split_at(count);
+                runs.push((number, run));
+                rest = after;
+            }
+            runs
         };
         let found: Vec<_> = lists.par_iter().with_max_len(1).map(runs_of).collect();
         let mut ends = vec![0_usize; lines.div_ceil(LINES) + 1];
@@ -70,24 +83,28 @@ impl<T: Copy> Sorted<T> {
     /// Sorts the items of the chunk that begins with line `first`, those of a line in their order.
     fn fill(&mut self, runs: &[Run<T>], first: usize) {
         self.begin = [0; LINES + 1];
-        let items = || runs.iter().copied().flatten();
-        let Some((_, any)) = items().next() else { return };
+        let Some((_, any)) = runs.iter().find_map(|run| run.first()) else {
+            return;
+        };
         let count = runs.iter().map(|run| run.len()).sum();
         if self.items.len() < count {
             self.items.resize(count, *any);
         }
-        let line = |item: &(u32, T)| item.0 as usize - first;
-        for item in items() {
-            self.begin[line(item) + 1] += 1;
+        for run in runs {
+            for (line, _) in *run {
+                self.begin[*line as usize - first + 1] += 1;
+            }
         }
         for k in 0..LINES {
             self.begin[k + 1] += self.begin[k];
         }
         let mut next = self.begin;
-        for item in items() {
-            let at = &mut next[line(item)];
-            self.items[*at as usize] = item.1;
-            *at += 1;
+        for run in runs {
+            for (line, item) in *run {
+                let at = &mut next[*line as usize - first];
+                self.items[*at as usize] = *item;
+                *at += 1;
+            }
         }
     }
 

@@ -84,7 +84,7 @@ const FEW: usize = 24;
 /// stay where they are. `None` for all others.
 fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -> Option<()> {
     intervals.clear();
-    let mut heights = [(0.0_f64, 0_u8); FEW];
+    let mut heights = [(0.0_f64, 0_u8, 0_i8); FEW];
     let heights = heights.get_mut(..crossings.len())?;
     for (n, crossing) in crossings.iter().enumerate() {
         let z = crossing.z;
@@ -93,41 +93,37 @@ fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -
         }
         let mut at = n;
         while at > 0 && {
-            let (below, number) = heights[at - 1];
+            let (below, number, _) = heights[at - 1];
             below > z || (below == z && order(&crossings[usize::from(number)], crossing).is_gt())
         } {
             heights[at] = heights[at - 1];
             at -= 1;
         }
-        heights[at] = (z, n as u8);
+        heights[at] = (z, n as u8, crossing.jump);
     }
-    let mut sum = 0_i32;
-    let mut lower: Option<usize> = None;
-    let mut first = 0;
-    while first < heights.len() {
-        let bottom = heights[first].0;
-        let (mut rises, mut falls) = (None, None);
-        let mut last = first;
-        loop {
-            let at = usize::from(heights[last].1);
-            let jump = crossings[at].jump;
-            sum += i32::from(jump);
-            if jump > 0 {
-                rises = rises.or(Some(at));
-            } else if jump < 0 {
-                falls = Some(at);
+    let end = |number: u8| end(&crossings[usize::from(number)]);
+    let (mut sum, mut lower) = (0_i32, None);
+    // Of a group: its lowest height, the first crossing that begins something and the last one that ends something.
+    let mut bottom = heights.first().map_or(0.0, |(z, ..)| *z);
+    let (mut rises, mut falls) = (None, None);
+    let mut above = heights.iter().skip(1).map(|(z, ..)| *z);
+    for (z, number, jump) in &*heights {
+        sum += i32::from(*jump);
+        if *jump > 0 {
+            rises = rises.or(Some(*number));
+        } else if *jump < 0 {
+            falls = Some(*number);
+        }
+        let next = above.next();
+        if let Some(next) = next
+            && next - z <= same
+        {
+            // Chains are counted otherwise.
+            if next - bottom > same {
+                intervals.clear();
+                return None;
             }
-            match heights.get(last + 1) {
-                Some((z, _)) if *z - heights[last].0 <= same => {
-                    // Chains are counted otherwise.
-                    if *z - bottom > same {
-                        intervals.clear();
-                        return None;
-                    }
-                    last += 1;
-                }
-                _ => break,
-            }
+            continue;
         }
         if sum < 0 {
             break;
@@ -137,10 +133,13 @@ fn cover_few(crossings: &[Crossing], same: f64, intervals: &mut Vec<Interval>) -
         } else if let Some(lower) = lower.take()
             && let Some(upper) = falls
         {
-            let [lower, upper] = [lower, upper].map(|at| end(&crossings[at]));
-            intervals.push(Interval { lower, upper });
+            intervals.push(Interval {
+                lower: end(lower),
+                upper: end(upper),
+            });
         }
-        first = last + 1;
+        bottom = next.unwrap_or(bottom);
+        (rises, falls) = (None, None);
     }
     if sum == 0 {
         return Some(());

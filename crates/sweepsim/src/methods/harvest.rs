@@ -89,11 +89,15 @@ impl Harvest {
 
     /// Drops the crossings since a mark that are above a height; the lines of those nearer to it than `near` are open.
     pub fn keep_below(&mut self, mark: usize, height: f64, height_tolerance: f64) {
-        let mut kept = mark;
-        for at in mark..self.crossings.len() {
+        // NaN is near.
+        let near = |z: f64| !((z - height).abs() > height_tolerance);
+        let is_kept = |(_, crossing): &Numbered| !near(crossing.z) && crossing.z < height;
+        // Mostly all of them.
+        let first = mark + self.crossings[mark..].iter().take_while(|own| is_kept(own)).count();
+        let mut kept = first;
+        for at in first..self.crossings.len() {
             let (line, crossing) = self.crossings[at];
-            // NaN is near.
-            if !((crossing.z - height).abs() > height_tolerance) {
+            if near(crossing.z) {
                 self.open.push((line, Cause::Smallest));
             } else if crossing.z < height {
                 self.crossings[kept] = self.crossings[at];

@@ -121,7 +121,11 @@ impl Search<'_> {
             Some(level_arc) => {
                 translation::sweep_level_arc(outline, (&heading, level_arc), collector, by_share, settled)
             }
-            None => translation::sweep_straight(outline, &heading, collector, |t| self.source(at, t), settled),
+            None => {
+                let (part, path) = (&self.parts[at], self.path);
+                let source = |t| source(part, path, part.segment.time(t));
+                translation::sweep_straight(outline, &heading, collector, source, settled);
+            }
         }
     }
 
@@ -251,12 +255,7 @@ impl Search<'_> {
 
     /// The source of a crossing after a share of the time of a part.
     fn source_after(&self, at: usize, share: f64) -> Source {
-        let (segment, t) = self.parts[at].place(share);
-        Source::Cut {
-            path: self.path,
-            segment,
-            t,
-        }
+        source(&self.parts[at], self.path, share)
     }
 
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
@@ -352,4 +351,11 @@ impl Search<'_> {
         });
         (map, sink)
     }
+}
+
+/// The source of a crossing after a share of the time of a part.
+#[inline]
+fn source(part: &PathPart, path: u32, share: f64) -> Source {
+    let (segment, t) = part.place(share);
+    Source::Cut { path, segment, t }
 }

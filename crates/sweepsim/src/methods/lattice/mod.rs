@@ -141,10 +141,25 @@ impl<'a> Lattice<'a> {
         number
     }
 
+    /// Whether every line of the window is asked for.
+    #[inline]
+    pub fn asks_for_all(&self) -> bool {
+        self.mask.is_none()
+    }
+
     /// Whether a line is asked for.
     #[inline]
     pub fn asks(&self, i: usize, j: usize) -> bool {
         self.mask.is_none_or(|mask| mask.contains(i, j))
+    }
+
+    /// As [`asks`](Self::asks), of a line with this number.
+    #[inline]
+    pub fn asks_for(&self, line: u32) -> bool {
+        self.mask.is_none_or(|mask| {
+            let (i, j) = self.grid.place(line as usize);
+            mask.contains(i, j)
+        })
     }
 
     /// The number of a line.

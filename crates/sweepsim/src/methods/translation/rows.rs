@@ -17,6 +17,19 @@ pub(super) struct Floor {
     pub rounding: f64,
 }
 
+impl Floor {
+    /// The range of `x` or `y` of all places with `p` and `q` in these ranges.
+    pub fn extent(&self, axis: usize, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
+        let [ux, uy] = self.ahead;
+        let spread = |a: f64, [low, high]: [f64; 2]| {
+            let (s, t) = (a * low, a * high);
+            [s.min(t), s.max(t)]
+        };
+        let (by_q, by_p) = (spread([ux, uy][axis], q), spread([-uy, ux][axis], p));
+        [0, 1].map(|end| self.tip[axis] + by_q[end] + by_p[end])
+    }
+}
+
 /// Lines of one column of the lattice (the same `x`), next to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
@@ -30,30 +43,31 @@ pub(super) struct Row {
 /// A condition `low ≤ base + rate y ≤ high` on `y`.
 #[derive(Clone, Copy)]
 struct Band {
+    /// First what is met at the lower `y`.
     range: [f64; 2],
     /// `1/rate`; 0 if it does not depend on `y`.
     inverse: f64,
 }
 
 impl Band {
-    fn new(range: [f64; 2], rate: f64) -> Self {
+    fn new([low, high]: [f64; 2], rate: f64) -> Self {
         let inverse = if rate == 0.0 { 0.0 } else { rate.recip() };
+        let range = if rate < 0.0 { [high, low] } else { [low, high] };
         Self { range, inverse }
     }
 
     /// The values of `y`, about.
     #[inline]
     fn values(&self, base: f64) -> [f64; 2] {
-        let [low, high] = self.range;
         if self.inverse == 0.0 {
+            let [low, high] = self.range;
             return if base >= low && base <= high {
                 [f64::NEG_INFINITY, f64::INFINITY]
             } else {
                 [f64::INFINITY, f64::NEG_INFINITY]
             };
         }
-        let (a, b) = ((low - base) * self.inverse, (high - base) * self.inverse);
-        [a.min(b), a.max(b)]
+        self.range.map(|end| (end - base) * self.inverse)
     }
 }
 
@@ -92,13 +106,7 @@ fn search(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl
     let margin = 2.0 * floor.rounding;
     let [p, q] = [p, q].map(|[low, high]| [low - margin, high + margin]);
     let [ux, uy] = floor.ahead;
-    let spread = |a: f64, [low, high]: [f64; 2]| {
-        let (s, t) = (a * low, a * high);
-        [s.min(t), s.max(t)]
-    };
-    let (by_q, by_p) = (spread(ux, q), spread(-uy, p));
-    let xs = [floor.tip[0] + by_q[0] + by_p[0], floor.tip[0] + by_q[1] + by_p[1]];
-    let Some([first, last]) = numbers(lines, 0, xs) else {
+    let Some([first, last]) = numbers(lines, 0, floor.extent(0, [p, q])) else {
         return false;
     };
     let (across, along) = (Band::new(p, ux), Band::new(q, uy));

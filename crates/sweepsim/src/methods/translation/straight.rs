@@ -1,10 +1,13 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::curves::{Graph, GraphCrossing, Heading, ring, slant, torus};
-use super::rows::{Floor, Row, rows};
+mod lanes;
+
+use super::curves::{Graph, Heading, ring, slant, torus};
+use super::rows::{Floor, Row, numbers, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use sweepsim_dexel::Source;
+use lanes::{LANES, Lanes};
+use sweepsim_dexel::{Crossing, Source};
 
 /// A strip narrower than this many margins is not searched: its lines are open.
 const NARROW: f64 = 16.0;
@@ -12,8 +15,6 @@ const NARROW: f64 = 16.0;
 const PARTS: f64 = 16.0;
 /// A part is about as long as the way, or this many lines.
 const LINES: f64 = 6.0;
-/// Lines of a row that are computed together.
-const LANES: usize = 64;
 
 /// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
 pub(crate) fn sweep_straight(
@@ -48,35 +49,6 @@ struct Strip<'a, 'b, S> {
     /// What is this high above the tip is above the ceiling at all times.
     highest: f64,
     lanes: Lanes,
-}
-
-/// Lines of a row, and those of them that the strip meets beyond doubt: how far along the row, `p`, and the way there.
-struct Lanes {
-    p: [f64; LANES],
-    q: [f64; LANES],
-    curve: [f64; LANES],
-    /// What the curve keeps of each.
-    own: [f64; LANES],
-    place: [usize; LANES],
-    met: [f64; LANES],
-    ahead: [f64; LANES],
-    points: [GraphCrossing; LANES],
-}
-
-impl Default for Lanes {
-    fn default() -> Self {
-        let none = [0.0; LANES];
-        Self {
-            p: none,
-            q: none,
-            curve: none,
-            own: none,
-            place: [0; LANES],
-            met: none,
-            ahead: none,
-            points: [GraphCrossing::default(); LANES],
-        }
-    }
 }
 
 /// What part of a strip is searched.
@@ -213,85 +185,128 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
                 Some(heading.slack * (2.0 + steepest))
             }),
         };
-        let lattice = self.lines.lines;
-        rows(lattice, &floor(heading), [wide, reach], |Row { i, j, x }| {
-            let mut first = j[0];
-            while first <= j[1] {
-                let last = j[1].min(first + LANES - 1);
-                self.row(graph, &part, (i, x), [first, last]);
-                first = last + 1;
+        let (lattice, floor) = (self.lines.lines, floor(heading));
+        let Some([lowest, highest]) = numbers(lattice, 1, floor.extent(1, [wide, reach])) else {
+            return;
+        };
+        // Of all columns.
+        let y: Vec<f64> = (lowest..=highest)
+            .map(|j| lattice.coordinate(1, j) - heading.tip[1])
+            .collect();
+        let [ux, uy] = heading.ahead;
+        rows(lattice, &floor, [wide, reach], |Row { i, j, x }| {
+            let (p_base, q_base) = (-uy * x, ux * x);
+            let place = |y: f64| [p_base + ux * y, q_base + uy * y];
+            let (mut next, end) = (j[0].max(lowest), (j[1] + 1).min(highest + 1));
+            while next < end {
+                let line = lattice.line(i, next) as u32;
+                next += self.lanes.add(line, &y[next - lowest..end - lowest], place);
+                if self.lanes.count == LANES {
+                    self.settle(graph, &part);
+                }
             }
         });
+        self.settle(graph, &part);
     }
 
-    /// Some lines of one column.
-    #[inline]
-    fn row<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, x): (usize, f64), [first, last]: [usize; 2]) {
+    /// The lines that have been added.
+    fn settle<G: Graph>(&mut self, graph: &G, part: &StripPart) {
         let heading = self.heading;
-        let lattice = self.lines.lines;
-        let count = last + 1 - first;
-        let [ux, uy] = heading.ahead;
-        let (p_base, q_base) = (-uy * x, ux * x);
-        let lanes = &mut self.lanes;
-        for (k, (p, q)) in lanes.p.iter_mut().zip(&mut lanes.q).take(count).enumerate() {
-            let y = lattice.coordinate(1, first + k) - heading.tip[1];
-            (*p, *q) = (p_base + ux * y, q_base + uy * y);
-        }
         let StripPart { wide, sure, .. } = part;
+        let count = std::mem::take(&mut self.lanes.count);
         let (Some(error), Some(jump)) = (part.error, part.jump) else {
             for k in 0..count {
                 let [p, q] = [self.lanes.p[k], self.lanes.q[k]];
                 if p >= wide[0] && p < wide[1] {
-                    self.one(graph, part, (i, first + k), [p, q]);
+                    self.one(graph, part, self.lanes.line[k], [p, q]);
                 }
             }
             return;
         };
-        graph.many_q(&lanes.p[..count], &mut lanes.curve[..count], &mut lanes.own[..count]);
+        let lanes = &mut self.lanes;
+        let (p, q, ahead, met) = (
+            &lanes.p[..count],
+            &lanes.q[..count],
+            &mut lanes.ahead[..count],
+            &mut lanes.met[..count],
+        );
+        graph.many_q(p, ahead, &mut lanes.own[..count]);
         let doubt = error.max(part.blurs[0]).max(part.blurs[1]);
-        let mut met = 0;
+        let (end, near, far) = (heading.length - error, -doubt, heading.length + doubt);
         let mut doubtful = 0;
-        for k in 0..count {
-            let (p, ahead) = (lanes.p[k], lanes.q[k] - lanes.curve[k]);
-            let certain = (ahead > error) & (ahead < heading.length - error) & (p >= sure[0]) & (p < sure[1]);
-            // Written always, kept if certain.
-            (lanes.place[met], lanes.met[met], lanes.ahead[met]) = (first + k, p, ahead);
-            lanes.own[met] = lanes.own[k];
-            met += usize::from(certain);
-            // NaN is near.
-            let near = !(ahead <= -doubt) & !(ahead >= heading.length + doubt) & (p >= wide[0]) & (p < wide[1]);
-            doubtful += usize::from(near & !certain);
+        for (((p, q), ahead), met) in p.iter().zip(q).zip(&mut *ahead).zip(met) {
+            *ahead = q - *ahead;
+            *met = (*ahead > error) & (*ahead < end) & (*p >= sure[0]) & (*p < sure[1]);
+            // NaN is close.
+            let close = !(*ahead <= near) & !(*ahead >= far) & (*p >= wide[0]) & (*p < wide[1]);
+            doubtful += usize::from(close & !*met);
         }
         if doubtful > 0 {
             for k in 0..count {
-                let (p, ahead) = (self.lanes.p[k], self.lanes.q[k] - self.lanes.curve[k]);
-                let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
-                let near = !(ahead <= -doubt || ahead >= heading.length + doubt) && p >= wide[0] && p < wide[1];
-                if near && !certain {
-                    self.one(graph, part, (i, first + k), [p, self.lanes.q[k]]);
+                let (ahead, [p, q]) = (self.lanes.ahead[k], [self.lanes.p[k], self.lanes.q[k]]);
+                let close = !(ahead <= near || ahead >= far) && p >= wide[0] && p < wide[1];
+                if close && !self.lanes.met[k] {
+                    self.one(graph, part, self.lanes.line[k], [p, q]);
                 }
             }
         }
-        if met == 0 || jump == 0 {
+        if jump == 0 {
             return;
         }
-        let lanes = &mut self.lanes;
-        graph.many(&lanes.met[..met], &lanes.own[..met], &mut lanes.points[..met]);
-        let rate = heading.length.recip();
-        for k in 0..met {
-            if lattice.asks(i, lanes.place[k]) {
-                let t = lanes.ahead[k] * rate;
-                let GraphCrossing { z, normal } = lanes.points[k];
-                let z = heading.tip[2] + t * heading.way[2] + z;
-                let line = lattice.line(i, lanes.place[k]);
-                let normal = heading.unit_in_space(normal);
-                self.lines.crossing(line, z, jump, normal, (self.source)(t));
+        let lattice = self.lines.lines;
+        if !lattice.asks_for_all() {
+            for k in 0..count {
+                self.lanes.met[k] &= lattice.asks_for(self.lanes.line[k]);
             }
         }
+        self.met(graph, jump, count);
+    }
+
+    /// The crossings of those lines that the strip meets, with this jump.
+    fn met<G: Graph>(&mut self, graph: &G, jump: i8, count: usize) {
+        let heading = self.heading;
+        let lanes = &mut self.lanes;
+        let mut met = 0;
+        for k in 0..count {
+            // Written always, kept if it is met.
+            (lanes.line[met], lanes.p[met]) = (lanes.line[k], lanes.p[k]);
+            (lanes.ahead[met], lanes.own[met]) = (lanes.ahead[k], lanes.own[k]);
+            met += usize::from(lanes.met[k]);
+        }
+        let Lanes {
+            p, own, ahead, t, z, ..
+        } = lanes;
+        let [q, left, up] = &mut lanes.normal;
+        let [q, left, up] = [&mut q[..met], &mut left[..met], &mut up[..met]];
+        let [a, b, c] = &mut lanes.unit;
+        let (t, z) = (&mut t[..met], &mut z[..met]);
+        graph.many(&p[..met], &own[..met], z, [q, left, up]);
+        let rate = heading.length.recip();
+        for (t, ahead) in t.iter_mut().zip(ahead) {
+            *t = *ahead * rate;
+        }
+        for (z, t) in z.iter_mut().zip(&*t) {
+            *z += heading.tip[2] + t * heading.way[2];
+        }
+        let units = a.iter_mut().zip(b).zip(c);
+        for (((q, left), up), ((a, b), c)) in q.iter().zip(left).zip(up).zip(units) {
+            [*a, *b, *c] = heading.unit_in_space([*q, *left, *up]);
+        }
+        let ([a, b, c], source) = (&lanes.unit, &self.source);
+        let crossings = lanes.line[..met].iter().enumerate().map(|(k, line)| {
+            let crossing = Crossing {
+                z: lanes.z[k],
+                jump,
+                normal: [a[k], b[k], c[k]],
+                source: source(lanes.t[k]),
+            };
+            (*line, crossing)
+        });
+        self.lines.harvest.crossings.extend(crossings);
     }
 
     /// One line, which may be near an end of the span, or of the way.
-    fn one<G: Graph>(&mut self, graph: &G, part: &StripPart, (i, j): (usize, usize), [p, q]: [f64; 2]) {
+    fn one<G: Graph>(&mut self, graph: &G, part: &StripPart, line: u32, [p, q]: [f64; 2]) {
         let heading = self.heading;
         let lattice = self.lines.lines;
         let StripPart {
@@ -303,8 +318,8 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         if p < sure[0] || p >= sure[1] {
             let end = usize::from(p >= sure[0]);
             let ahead = q - graph.at(p.clamp(*low, *high)).q;
-            if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks(i, j) {
-                self.lines.open(lattice.line(i, j));
+            if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks_for(line) {
+                self.lines.open(line as usize);
             }
             return;
         }
@@ -314,10 +329,10 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         if ahead < -error || ahead > heading.length + error || (point.jump == 0 && point.certain) {
             return;
         }
-        if !lattice.asks(i, j) {
+        if !lattice.asks_for(line) {
             return;
         }
-        let line = lattice.line(i, j);
+        let line = line as usize;
         // NaN is uncertain.
         if !(point.certain && ahead > error && ahead < heading.length - error) {
             self.lines.open(line);

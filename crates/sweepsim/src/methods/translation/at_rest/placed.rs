@@ -9,8 +9,11 @@ use super::radial::{Hypot, Radial, Stretch, StretchPoint};
 use crate::cutter::outline::{Monotone, Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use crate::time::path_parts::PathPart;
-use sweepsim_dexel::Source;
+use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::SegmentEnd;
+
+/// So much of the distance of lines is more than [`numbers`] may go beyond a range.
+const FRACTION: f64 = 2e-3;
 
 /// The motion on one side of a placement.
 #[derive(Clone, Copy, Debug)]
@@ -138,8 +141,11 @@ impl Placed<'_, '_> {
     }
 
     fn stretch(&mut self, radial: &Radial, [inner, outer]: [f64; 2]) {
-        if let Radial::Line { normal, .. } = radial
-            && let [Some(before), Some(after)] = self.constant(*normal)
+        let signs = match radial {
+            Radial::Line { normal, .. } => self.constant(*normal),
+            Radial::Arc { .. } => [None; 2],
+        };
+        if let [Some(before), Some(after)] = signs
             && before == after
         {
             return;
@@ -159,6 +165,7 @@ impl Placed<'_, '_> {
             return;
         };
         let stretch = Stretch::new(radial, [inner, outer], line_error, &self.sides);
+        let level = self.level(radial, signs).filter(|_| inner < 0.0);
         for i in first..=last {
             let x = lattice.coordinate(0, i) - tx;
             let half = (reach * reach - x * x).max(0.0).sqrt() + line_error;
@@ -181,6 +188,12 @@ impl Placed<'_, '_> {
                 None => None,
             };
             let mut next = 0;
+            if let Some(crossing) = level {
+                let within = outer - 2.0 * line_error;
+                let sure = (within * within - x * x).max(0.0).sqrt() - line_error;
+                self.lines(&stretch, (i, x), [-half, -sure], &mut next);
+                self.disc(i, sure, crossing, &mut next);
+            }
             for range in ranges {
                 let marked = marks
                     .as_ref()
@@ -191,6 +204,39 @@ impl Placed<'_, '_> {
                 }
             }
         }
+    }
+
+    /// What all lines well inside a level disc have, on which the signs of `g` differ before and after.
+    fn level(&self, radial: &Radial, signs: [Option<bool>; 2]) -> Option<Crossing> {
+        match (*radial, signs) {
+            (
+                Radial::Line {
+                    height,
+                    slope: 0.0,
+                    normal: [0.0, up],
+                },
+                [Some(before), Some(_)],
+            ) => Some(Crossing {
+                z: self.tip[2] + height,
+                jump: if (up > 0.0) == before { 1 } else { -1 },
+                normal: unit(nalgebra::Vector3::new(0.0, 0.0, up)),
+                source: self.source,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The lines of a column that are less than `half` from its middle, but for those before `next`: all have this crossing.
+    fn disc(&mut self, i: usize, half: f64, crossing: Crossing, next: &mut usize) {
+        let (lattice, ty) = (self.lines.lines, self.tip[1]);
+        let half = half - FRACTION * lattice.grid.spacing()[1];
+        let Some([low, high]) = numbers(lattice, 1, [ty - half, ty + half]) else {
+            return;
+        };
+        let asked = (low.max(*next)..=high).filter(|j| lattice.asks(i, *j));
+        let numbered = asked.map(|j| (lattice.line(i, j) as u32, crossing));
+        self.lines.harvest.crossings.extend(numbered);
+        *next = (*next).max(high + 1);
     }
 
     /// The lines of a column near its ends and some places, and between those of them where the signs of `g` differ.

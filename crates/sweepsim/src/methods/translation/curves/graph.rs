@@ -71,16 +71,8 @@ pub(crate) trait Graph {
     /// there may be any numbers.
     fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]);
 
-    /// Heights and normals at many values, between two of which all jumps are the same, and not 0.
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]);
-}
-
-/// What a crossing has of a graph.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct GraphCrossing {
-    pub z: f64,
-    /// As that of a [`GraphPoint`].
-    pub normal: Local,
+    /// Heights and normals (as those of a [`GraphPoint`]) at many values, between two of which all jumps are the same, and not 0.
+    fn many(&self, p: &[f64], own: &[f64], z: &mut [f64], normal: [&mut [f64]; 3]);
 }
 
 /// A graph that may turn with the tool about a line beside it.

@@ -10,7 +10,7 @@ pub(crate) mod slant;
 pub(crate) mod torus;
 mod torus_about;
 
-pub(crate) use graph::{Graph, GraphCrossing, Turned, TurnedPoint};
+pub(crate) use graph::{Graph, Turned, TurnedPoint};
 pub(crate) use heading::{Heading, SHORTEST, slack, stands};
 pub(crate) use parabola::Parabola;
 pub(crate) use ring_about::Beside;

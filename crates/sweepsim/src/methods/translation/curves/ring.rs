@@ -1,6 +1,6 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::{Heading, Local, along, dot};
 use crate::cutter::outline::{Rim, fan_normal};
 use std::f64::consts::PI;
@@ -333,25 +333,29 @@ impl Graph for Ring {
     }
 
     fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]) {
+        // By value: nothing that is written here can change it.
+        let ring = *self;
         for ((p, q), own) in p.iter().zip(q).zip(own) {
-            let [c, s] = self.turn(*p);
-            *q = self.centre[0] + (c * self.first[0] + s * self.second[0]);
+            let [c, s] = ring.turn(*p);
+            *q = ring.centre[0] + (c * ring.first[0] + s * ring.second[0]);
             *own = s;
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
-        let values = p.iter().zip(own);
-        let turn = |(p, s): (&f64, &f64)| [((p - self.centre[1]) / self.width).clamp(-1.0, 1.0), *s];
-        match &self.role {
+    fn many(&self, p: &[f64], own: &[f64], z: &mut [f64], [q, left, up]: [&mut [f64]; 3]) {
+        let ring = *self;
+        let points = z.iter_mut().zip(q).zip(left).zip(up);
+        let values = p.iter().zip(own).zip(points);
+        let arm = |p: f64, s: f64| {
+            let c = ((p - ring.centre[1]) / ring.width).clamp(-1.0, 1.0);
+            ([c, s], along(&ring.first.map(|x| c * x), s, &ring.second))
+        };
+        match ring.role {
             Role::Ball { out, .. } => {
-                for (value, point) in values.zip(points) {
-                    let [c, s] = turn(value);
-                    let arm = along(&self.first.map(|x| c * x), s, &self.second);
-                    *point = GraphCrossing {
-                        z: self.centre[2] + arm[2],
-                        normal: arm.map(|x| out * x),
-                    };
+                for ((p, s), (((z, q), left), up)) in values {
+                    let (_, arm) = arm(*p, *s);
+                    *z = ring.centre[2] + arm[2];
+                    [*q, *left, *up] = arm.map(|x| out * x);
                 }
             }
             Role::Rim {
@@ -362,16 +366,13 @@ impl Graph for Ring {
                 axis,
                 ..
             } => {
-                for (value, point) in values.zip(points) {
-                    let turn = turn(value);
-                    let arm = along(&self.first.map(|x| turn[0] * x), turn[1], &self.second);
-                    let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
+                for ((p, s), (((z, q), left), up)) in values {
+                    let ([c, s], arm) = arm(*p, *s);
+                    let cosine = azimuth[0] * c + azimuth[1] * s;
                     let [a, b] = rates.map(|[ahead, up]| ahead * cosine + up);
-                    let [n, m] = fan_normal(normals, [a, b]);
-                    *point = GraphCrossing {
-                        z: self.centre[2] + arm[2],
-                        normal: along(&arm.map(|x| x * n / radius), m, axis),
-                    };
+                    let [n, m] = fan_normal(&normals, [a, b]);
+                    *z = ring.centre[2] + arm[2];
+                    [*q, *left, *up] = along(&arm.map(|x| x * n / radius), m, &axis);
                 }
             }
         }

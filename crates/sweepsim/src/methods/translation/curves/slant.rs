@@ -1,6 +1,6 @@
 //! The grazing curve of a cone or cylinder: two straight lines.
 
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::{Heading, Local};
 
 /// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
@@ -103,12 +103,12 @@ impl Graph for Slant {
         }
     }
 
-    fn many(&self, p: &[f64], _: &[f64], points: &mut [GraphCrossing]) {
-        for (p, point) in p.iter().zip(points) {
-            *point = GraphCrossing {
-                z: self.place(*p)[1],
-                normal: self.normal,
-            };
+    fn many(&self, p: &[f64], _: &[f64], z: &mut [f64], normal: [&mut [f64]; 3]) {
+        for (p, z) in p.iter().zip(z) {
+            *z = self.place(*p)[1];
+        }
+        for (all, own) in normal.into_iter().zip(self.normal) {
+            all.fill(own);
         }
     }
 }

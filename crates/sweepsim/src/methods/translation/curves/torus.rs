@@ -10,7 +10,7 @@
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
 use super::Heading;
-use super::graph::{End, Graph, GraphCrossing, GraphPoint, Turned};
+use super::graph::{End, Graph, GraphPoint, Turned};
 use super::newton::{middle, newton};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -313,15 +313,15 @@ impl Graph for Torus {
         }
     }
 
-    fn many(&self, p: &[f64], own: &[f64], points: &mut [GraphCrossing]) {
-        let sign = self.out * self.signs[0];
-        for ((p, e), point) in p.iter().zip(own).zip(points) {
-            let [rho, f] = self.meridian(*e);
+    fn many(&self, p: &[f64], own: &[f64], z: &mut [f64], [q, left, up]: [&mut [f64]; 3]) {
+        let torus = *self;
+        let sign = torus.out * torus.signs[0];
+        let points = z.iter_mut().zip(q).zip(left).zip(up);
+        for ((p, e), (((z, q), left), up)) in p.iter().zip(own).zip(points) {
+            let [rho, f] = torus.meridian(*e);
             let across = sign * e;
-            *point = GraphCrossing {
-                z: self.centre[1] + self.radius * f,
-                normal: [-self.out * self.slope * f, across * (p / rho), self.out * f],
-            };
+            *z = torus.centre[1] + torus.radius * f;
+            [*q, *left, *up] = [-torus.out * torus.slope * f, across * (p / rho), torus.out * f];
         }
     }
 }
