@@ -75,8 +75,8 @@ impl Solid {
                 });
             }
             let chains = chains(&net, &groups, &labels, options.cell);
-            let placed = place(&net, &groups, &labels, &chains, &options);
-            let made = faces(&net, &groups, &labels, &chains, &placed, options);
+            let mut placed = place(&net, &groups, &labels, &chains, &options);
+            let made = faces(&net, &groups, &labels, &chains, &mut placed, options);
             let given_up = give_up(&net, &groups, &mut labels, &placed, &made);
             if given_up > 0 && round < ROUNDS {
                 continue;
@@ -122,9 +122,7 @@ impl Solid {
 fn free_rough(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, made: &Faces, most: f64) -> usize {
     let mut freed = 0;
     for group in (0..groups.count()).filter(|group| !groups.is_free(*group)) {
-        let Some(face) = made.of_group[group].map(|face| &made.all[face as usize]) else {
-            continue;
-        };
+        let Some(face) = made.of(group).first() else { continue };
         let edges = face.loops.iter().flatten();
         let mut edges = edges.filter_map(|(edge, _)| placed.edges[*edge as usize].as_ref());
         let off = |edge: &Edge| (0..=8).any(|k| face.surface.off(edge.at(f64::from(k) / 8.0)) > most);

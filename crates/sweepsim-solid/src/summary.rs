@@ -48,7 +48,7 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
     }
     let mut nearest: BTreeMap<u32, f64> = BTreeMap::new();
     for group in 0..groups.count() {
-        let face = made.of_group[group].map(|face| &made.all[face as usize]);
+        let faces = made.of(group);
         let kind = match groups.label[group] {
             FREE => "facet",
             label => labels.all[label as usize].surface.kind(),
@@ -57,15 +57,14 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
             *summary.areas.entry(kind).or_default() += 0.5 * net.area(*triangle as usize).norm();
             let number = net.end_of(*triangle as usize);
             let end = &net.ends.ends[number as usize];
-            let Some(face) = face.filter(|_| end.normal.is_some()) else {
-                continue;
-            };
-            let off = face.surface.off(end.place.into());
-            if face.is_facet {
-                let least = nearest.entry(number).or_insert(f64::INFINITY);
-                *least = least.min(off);
-            } else {
-                summary.deviation = summary.deviation.max(off);
+            for face in faces.iter().filter(|_| end.normal.is_some()) {
+                let off = face.surface.off(end.place.into());
+                if face.is_facet {
+                    let least = nearest.entry(number).or_insert(f64::INFINITY);
+                    *least = least.min(off);
+                } else {
+                    summary.deviation = summary.deviation.max(off);
+                }
             }
         }
     }

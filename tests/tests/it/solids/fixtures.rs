@@ -2,8 +2,8 @@
 
 use super::{kinds, outputs};
 use std::path::Path;
-use sweepsim_formats::parse_step;
-use sweepsim_job::{Output, Request, Task};
+use sweepsim_formats::{StepPart, parse_step};
+use sweepsim_job::{Outcome, Output, Request, Task};
 
 /// On coarse lines, faces with edges too far from them for readers become triangles.
 #[test]
@@ -16,17 +16,30 @@ fn quickstart_on_usual_lines() {
     quickstart([75, 50]);
 }
 
-/// A pocket, and a groove for five axes, which stays triangles.
-fn quickstart(cells: [usize; 2]) {
-    let job = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/jobs/quickstart.ron");
-    let request = Request::from_file(job)
-        .task(Task::Simulate)
-        .cells(cells)
-        .outputs([Output::Step]);
+/// What the tools sweep, on lines 1 mm apart: sides of triangles without width become several edges, not in a plane.
+#[test]
+fn sweep_of_the_quickstart_on_coarse_lines() {
+    let (part, outcome) = read_back("quickstart.ron", Task::Sweep, [60, 40]);
+    let faces = kinds(&part);
+    assert!(faces["cylinder"] >= 4 && faces["plane"] > 1000, "{faces:?}");
+    let volume: f64 = part.bodies.iter().map(|body| body.volume.unwrap()).sum();
+    let dexels = outcome.part().volume();
+    assert!((volume - dexels).abs() < 5e-3 * dexels, "{volume} {dexels}");
+}
+
+/// The solid of a job among the fixtures.
+fn read_back(job: &str, task: Task, cells: [usize; 2]) -> (StepPart, Outcome) {
+    let job = format!("{}/../fixtures/jobs/{job}", env!("CARGO_MANIFEST_DIR"));
+    let request = Request::from_file(job).task(task).cells(cells).outputs([Output::Step]);
     let outcome = request.plan().unwrap().run(&()).unwrap();
     let mut memory = sweepsim_job::Memory::default();
     outcome.write_to(&mut memory, &[Output::Step], &()).unwrap();
-    let part = parse_step(&memory.0["part.step"], 0.05).unwrap();
+    (parse_step(&memory.0["part.step"], 0.05).unwrap(), outcome)
+}
+
+/// A pocket, and a groove for five axes, which stays triangles.
+fn quickstart(cells: [usize; 2]) {
+    let (part, outcome) = read_back("quickstart.ron", Task::Simulate, cells);
     let faces = kinds(&part);
     assert!(faces["cylinder"] >= 4 && faces["plane"] > 1000, "{faces:?}");
     // Where the groove ends, the last place of the ball.
