@@ -7,7 +7,7 @@ use crate::label::{FREE, Groups, Labels, finer, labels, split};
 use crate::net::Net;
 use crate::parts::{Body, Face, SolidOptions};
 use crate::summary::{Summary, summary};
-use crate::surface::Surface;
+use crate::surface::{Surface, TensorSpline};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use sweepsim_dexel::{Mesh, SurfaceEnd, SurfaceEnds};
@@ -18,6 +18,8 @@ const ROUNDS: usize = 40;
 const FINEST: usize = 12;
 /// Smaller faces are given up as a whole.
 const SMALL: usize = 48;
+/// How far splines may be from what they are written for, in parts of the size of a tool's piece.
+const SPLINE: f64 = 2.5e-7;
 /// The most faces.
 const MOST_FACES: usize = 400_000;
 
@@ -76,7 +78,7 @@ impl Solid {
             }
             let chains = chains(&net, &groups, &labels, options.cell);
             let mut placed = place(&net, &groups, &labels, &chains, &options);
-            let made = faces(&net, &groups, &labels, &chains, &mut placed, options);
+            let mut made = faces(&net, &groups, &labels, &chains, &mut placed, options);
             let given_up = give_up(&net, &groups, &mut labels, &placed, &made);
             if given_up > 0 && round < ROUNDS {
                 continue;
@@ -91,7 +93,12 @@ impl Solid {
                 net = Net::new(Cow::Owned(mesh), Cow::Owned(ends))?;
                 continue;
             }
-            if round < ROUNDS && free_rough(&net, &groups, &mut labels, &placed, &made, 2.0 * options.chord) > 0 {
+            let rough = rough(&groups, &placed, &made, 2.0 * options.chord);
+            if round < ROUNDS && free(&net, &groups, &mut labels, &rough) > 0 {
+                continue;
+            }
+            let unfitted = fit(&mut made, &options);
+            if round < ROUNDS && free(&net, &groups, &mut labels, &unfitted) > 0 {
                 continue;
             }
             let open = open_edges(&placed, &made);
@@ -118,23 +125,48 @@ impl Solid {
     }
 }
 
-/// Takes the surface from faces with an edge that is farther from them than readers take, and says from how many ends.
-fn free_rough(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, made: &Faces, most: f64) -> usize {
+/// Takes the surface from groups, and says from how many ends.
+fn free(net: &Net, groups: &Groups, labels: &mut Labels, all: &[usize]) -> usize {
     let mut freed = 0;
-    for group in (0..groups.count()).filter(|group| !groups.is_free(*group)) {
-        let Some(face) = made.of(group).first() else { continue };
-        let edges = face.loops.iter().flatten();
-        let mut edges = edges.filter_map(|(edge, _)| placed.edges[*edge as usize].as_ref());
-        let off = |edge: &Edge| (0..=8).any(|k| face.surface.off(edge.at(f64::from(k) / 8.0)) > most);
-        if edges.any(off) {
-            for triangle in groups.triangles(group) {
-                let label = &mut labels.of[net.end_of(*triangle as usize) as usize];
-                freed += usize::from(*label != FREE);
-                *label = FREE;
-            }
+    for group in all {
+        for triangle in groups.triangles(*group) {
+            let label = &mut labels.of[net.end_of(*triangle as usize) as usize];
+            freed += usize::from(*label != FREE);
+            *label = FREE;
         }
     }
     freed
+}
+
+/// Faces with an edge that is farther from them than readers take.
+fn rough(groups: &Groups, placed: &Placed, made: &Faces, most: f64) -> Vec<usize> {
+    let is_rough = |group: &usize| {
+        let Some(face) = made.of(*group).first() else {
+            return false;
+        };
+        let edges = face.loops.iter().flatten();
+        let mut edges = edges.filter_map(|(edge, _)| placed.edges[*edge as usize].as_ref());
+        edges.any(|edge| (0..=8).any(|k| face.surface.off(edge.at(f64::from(k) / 8.0)) > most))
+    };
+    let surfaces = (0..groups.count()).filter(|group| !groups.is_free(*group));
+    surfaces.filter(is_rough).collect()
+}
+
+/// Finds splines for swept faces, and says for which groups there are none.
+fn fit(made: &mut Faces, options: &SolidOptions) -> Vec<usize> {
+    let mut failed = Vec::new();
+    for group in 0..made.of_group.len() {
+        for number in made.of_group[group].clone() {
+            let face = &mut made.all[number as usize];
+            let Surface::Swept(sheet) = &face.surface else { continue };
+            let limit = (0.1 * options.tolerance).max(SPLINE * sheet.scale()[0]);
+            face.spline = TensorSpline::new(sheet, face.range, limit);
+            if face.spline.is_none() {
+                failed.push(group);
+            }
+        }
+    }
+    failed
 }
 
 /// How many edges are not passed once each way.

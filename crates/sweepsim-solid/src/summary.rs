@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Summary {
-    /// How many faces of each kind: `plane`, `cylinder`, `cone`, `sphere`, `torus`, `sheet`, `facet`.
+    /// How many faces of each kind: `plane`, `cylinder`, `cone`, `sphere`, `torus`, `sheet`, `spline`, `facet`.
     pub faces: BTreeMap<&'static str, usize>,
     /// The area of each kind, of the mesh.
     pub areas: BTreeMap<&'static str, f64>,
@@ -20,6 +20,8 @@ pub struct Summary {
     pub facet_deviation: f64,
     /// The largest distance of a vertex or an edge from the surfaces of its faces.
     pub gap: f64,
+    /// The largest distance found of a B-spline from the surface that it is written for: to be added to the others.
+    pub spline: f64,
 }
 
 impl Summary {
@@ -37,6 +39,7 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
     for face in &made.all {
         let kind = if face.is_facet { "facet" } else { face.surface.kind() };
         *summary.faces.entry(kind).or_default() += 1;
+        summary.spline = summary.spline.max(face.spline.as_ref().map_or(0.0, |spline| spline.off));
         for (edge, _) in face.loops.iter().flatten() {
             let Some(edge) = &placed.edges[*edge as usize] else {
                 continue;

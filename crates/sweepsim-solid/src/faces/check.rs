@@ -3,6 +3,7 @@
 use crate::chart::{Chart, wrapped};
 use crate::edges::Placed;
 use crate::parts::Use;
+use crate::surface::Surface;
 use std::f64::consts::PI;
 
 /// The most points of a face whose loops are looked at for crossings.
@@ -81,6 +82,10 @@ fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<[f64; 2]>>
             samples.pop();
         }
         points.extend(samples.into_iter().map(|p| chart.uv(p)));
+    }
+    let pointed = matches!(chart.surface, Surface::Analytic(_));
+    if !pointed && points.iter().any(|p| p[0].is_none()) {
+        return None;
     }
     // Beginning after a point without an angle, such as the tip of a cone, which then closes the loop.
     if let Some(tip) = points.iter().position(|p| p[0].is_none()) {

@@ -130,5 +130,6 @@ fn flat_face(loops: Vec<Vec<Use>>, placed: &Placed) -> Option<Face> {
         loops,
         is_facet: true,
         range: [[0.0; 2]; 2],
+        spline: None,
     })
 }

@@ -99,11 +99,12 @@ fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) ->
         chart
     };
     Some(Face {
-        surface: label.surface,
+        surface: label.surface.clone(),
         outward: label.outward,
         axes: turned.axes,
         loops: order.into_iter().map(|k| loops[k].clone()).collect(),
         is_facet: false,
         range,
+        spline: None,
     })
 }
