@@ -39,7 +39,9 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
     for face in &made.all {
         let kind = if face.is_facet { "facet" } else { face.surface.kind() };
         *summary.faces.entry(kind).or_default() += 1;
-        summary.spline = summary.spline.max(face.spline.as_ref().map_or(0.0, |spline| spline.off));
+        summary.spline = summary
+            .spline
+            .max(face.spline.as_ref().map_or(0.0, |spline| spline.off));
         for (edge, _) in face.loops.iter().flatten() {
             let Some(edge) = &placed.edges[*edge as usize] else {
                 continue;

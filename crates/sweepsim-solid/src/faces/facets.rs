@@ -26,10 +26,7 @@ pub(super) fn facets(
         return Some(vec![whole]);
     }
     let parts = cut(only, whole.axes[2], placed)?;
-    parts
-        .into_iter()
-        .map(|part| flat_face(vec![part], placed))
-        .collect()
+    parts.into_iter().map(|part| flat_face(vec![part], placed)).collect()
 }
 
 /// Cuts a polygon into triangles by new edges, each time where the new triangle is the least thin.

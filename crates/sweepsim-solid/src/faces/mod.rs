@@ -7,6 +7,7 @@ mod shells;
 
 pub(crate) use shells::shells;
 
+use check::Crossing;
 use facets::facets;
 use flat::Flat;
 
@@ -15,7 +16,11 @@ use crate::edges::{Chains, Placed};
 use crate::label::{FREE, Groups, Labels};
 use crate::net::Net;
 use crate::parts::{Face, SolidOptions, Use};
+use nalgebra::Vector3;
 use std::ops::Range;
+
+/// So far from where edges cross, in cells, a face is given up for triangles.
+const NEAR: f64 = 1.5;
 
 /// The faces of a solid, and the triangles of those that could not be made.
 pub(crate) struct Faces {
@@ -31,6 +36,16 @@ impl Faces {
         let Range { start, end } = self.of_group[group];
         &self.all[start as usize..end as usize]
     }
+}
+
+/// Triangles near one of a few points.
+fn near(net: &Net, triangles: &[u32], points: &[Vector3<f64>], cell: f64) -> Vec<u32> {
+    let is_near = |t: &&u32| {
+        let corners = net.mesh.triangles[**t as usize].map(|v| net.place(v));
+        let any = |at: &Vector3<f64>| corners.iter().any(|p| (p - at).norm() < NEAR * cell);
+        points.iter().any(any)
+    };
+    triangles.iter().filter(is_near).copied().collect()
 }
 
 /// Makes the faces of all groups.
@@ -71,24 +86,28 @@ pub(crate) fn faces(
         if own.is_empty() {
             continue;
         }
+        let triangles = groups.triangles(group);
         let made = if groups.is_free(group) {
-            facets(net, groups.triangles(group)[0] as usize, own, placed, 0.1 * options.chord)
+            facets(net, triangles[0] as usize, own, placed, 0.1 * options.chord).ok_or(None)
         } else {
             curved(labels, groups.label[group], own, placed).map(|face| vec![face])
         };
         match made {
-            Some(made) => {
+            Ok(made) => {
                 let first = faces.all.len() as u32;
                 faces.all.extend(made);
                 faces.of_group[group] = first..faces.all.len() as u32;
             }
-            None => faces.failed.extend(groups.triangles(group)),
+            Err(crossing) => {
+                let near = near(net, triangles, &Vec::from_iter(crossing), options.cell);
+                faces.failed.extend(if near.is_empty() { triangles } else { &near });
+            }
         }
     }
     faces
 }
 
-fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) -> Option<Face> {
+fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) -> Result<Face, Crossing> {
     debug_assert!(label != FREE);
     let label = &labels.all[label as usize];
     let chart = Chart::new(label);
@@ -98,7 +117,7 @@ fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) ->
     } else {
         chart
     };
-    Some(Face {
+    Ok(Face {
         surface: label.surface.clone(),
         outward: label.outward,
         axes: turned.axes,

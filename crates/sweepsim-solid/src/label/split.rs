@@ -82,7 +82,11 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
             labels.of[net.end_of(*triangle as usize) as usize] = own;
         }
         // Dividers that it had, it has still.
-        let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, plane.clone())).collect();
+        let old: Vec<_> = labels
+            .dividers
+            .iter()
+            .map(|(pair, plane)| (*pair, plane.clone()))
+            .collect();
         for ((a, b), plane) in old {
             if let Some(other) = [(a, b), (b, a)]
                 .into_iter()
@@ -127,7 +131,11 @@ fn cut(net: &Net, labels: &mut Labels, groups: &Groups, face: usize, plane: Surf
         labels.of[net.end_of(*triangle as usize) as usize] = first + u32::from(below(*triangle));
     }
     let number = groups.label[face];
-    let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, plane.clone())).collect();
+    let old: Vec<_> = labels
+        .dividers
+        .iter()
+        .map(|(pair, plane)| (*pair, plane.clone()))
+        .collect();
     for ((a, b), before) in old {
         if let Some(other) = [(a, b), (b, a)]
             .into_iter()

@@ -5,10 +5,10 @@ mod swept;
 mod tensor;
 
 pub use elliptic::EllipticSheet;
-pub use swept::{SweptPiece, SweptSheet};
-pub(crate) use tensor::TensorSpline;
 use nalgebra::Vector3;
 use sweepsim_dexel::AnalyticSurface;
+pub use swept::{SweptPiece, SweptSheet};
+pub(crate) use tensor::TensorSpline;
 
 /// A surface that a face can be part of.
 #[derive(Clone, Debug, PartialEq)]

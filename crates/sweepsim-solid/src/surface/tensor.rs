@@ -126,7 +126,11 @@ fn beside(knots: &[f64]) -> Vec<[f64; 2]> {
     (0..=last)
         .map(|k| {
             let before = if k == 0 { 0.0 } else { (knots[k - 1] - knots[k]) / 3.0 };
-            let after = if k == last { 0.0 } else { (knots[k + 1] - knots[k]) / 3.0 };
+            let after = if k == last {
+                0.0
+            } else {
+                (knots[k + 1] - knots[k]) / 3.0
+            };
             [before, after]
         })
         .collect()
@@ -137,9 +141,10 @@ fn control(knots: &[Vec<f64>; 2], jets: &[Vec<Jet>]) -> Vec<Vec<Vector3<f64>>> {
     let mut rows = Vec::with_capacity(2 * knots[0].len());
     for (own, us) in jets.iter().zip(&steps[0]) {
         for x in us {
-            let row = own.iter().zip(&steps[1]).flat_map(|([p, by_u, by_v, by_both], vs)| {
-                vs.map(|y| p + by_u * *x + by_v * y + by_both * (x * y))
-            });
+            let row = own
+                .iter()
+                .zip(&steps[1])
+                .flat_map(|([p, by_u, by_v, by_both], vs)| vs.map(|y| p + by_u * *x + by_v * y + by_both * (x * y)));
             rows.push(row.collect());
         }
     }

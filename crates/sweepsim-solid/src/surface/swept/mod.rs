@@ -88,10 +88,14 @@ impl SweptSheet {
             return Vec::new();
         };
         let step = (1.0 + 2.0 * ROOM) / TIMES as f64;
-        let times: Arc<Vec<_>> = Arc::new((0..=TIMES).map(|k| {
-            let t = k as f64 * step - ROOM;
-            (t, motion.at(t))
-        }).collect());
+        let times: Arc<Vec<_>> = Arc::new(
+            (0..=TIMES)
+                .map(|k| {
+                    let t = k as f64 * step - ROOM;
+                    (t, motion.at(t))
+                })
+                .collect(),
+        );
         let one = |piece: &SweptPiece| {
             let mut sheet = Self {
                 motion: motion.clone(),
@@ -111,7 +115,10 @@ impl SweptSheet {
     fn across_all(&self) -> Option<Vector3<f64>> {
         let mut best = (0.05, None);
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let sines = self.times.iter().map(|(_, at)| Some(self.pole(at)?.cross(&axis).norm()));
+            let sines = self
+                .times
+                .iter()
+                .map(|(_, at)| Some(self.pole(at)?.cross(&axis).norm()));
             let least = sines.collect::<Option<Vec<f64>>>()?.into_iter().fold(1.0, f64::min);
             if least > best.0 {
                 best = (least, Some(axis));
@@ -122,20 +129,24 @@ impl SweptSheet {
 
     /// Whether the first parameter, the second and the outward normal are a right-handed system, where they are one.
     fn is_right_handed(&self) -> Option<bool> {
-        let tried = [0.5, 0.25, 0.75, 0.1, 0.9].into_iter().flat_map(|t| [0.5, 2.0, -1.0, -2.5].map(|u| (u, t)));
+        let tried = [0.5, 0.25, 0.75, 0.1, 0.9]
+            .into_iter()
+            .flat_map(|t| [0.5, 2.0, -1.0, -2.5].map(|u| (u, t)));
         let found = tried.filter_map(|(u, t)| {
             let u = match self.piece {
                 SweptPiece::Line { .. } => self.length() * (0.5 + 0.1 * u),
                 _ => u,
             };
             let [_, by_u, by_t, _] = self.derivatives(u, t)?;
-            let foot = self.foot(self.point(u, t)?)?;
+            let foot = self
+                .foot(self.point(u, t)?)
+                .filter(|foot| (foot.time - t).abs() < 1e-3)?;
             let volume = by_u.cross(&by_t).dot(&foot.grows);
             (volume.abs() > 1e-3 * by_u.norm() * by_t.norm()).then_some(volume > 0.0)
         });
         let found: Vec<bool> = found.collect();
-        let first = *found.first()?;
-        found.iter().all(|right| *right == first).then_some(first)
+        let right = found.iter().filter(|right| **right).count();
+        (!found.is_empty()).then_some(2 * right > found.len())
     }
 
     /// The length of a line.

@@ -6,6 +6,8 @@ use std::f64::consts::PI;
 /// The degree of the polynomials, and how far their last coefficients must have come down, in parts of the largest.
 const DEGREE: usize = 23;
 const SMALL: f64 = 1e-13;
+/// Coefficients below this, in parts of the largest, are rounding.
+const ROUNDING: f64 = 5e-16;
 /// How far the motion goes on before 0 and after 1: faces have room around them.
 pub(crate) const ROOM: f64 = 0.04;
 
@@ -38,9 +40,10 @@ impl Motion {
             })
             .collect();
         let coefficient = |n: usize, of: usize| -> Vector3<f64> {
-            let parts = samples.iter().enumerate().map(|(k, sample)| {
-                sample[of] * (PI * n as f64 * (k as f64 + 0.5) / count as f64).cos()
-            });
+            let parts = samples
+                .iter()
+                .enumerate()
+                .map(|(k, sample)| sample[of] * (PI * n as f64 * (k as f64 + 0.5) / count as f64).cos());
             parts.sum::<Vector3<f64>>() * (if n == 0 { 1.0 } else { 2.0 } / count as f64)
         };
         let places: Vec<_> = (0..count).map(|n| [0, 1].map(|of| coefficient(n, of))).collect();
@@ -52,6 +55,12 @@ impl Motion {
                 return None;
             }
         }
+        // What is left of rounding says nothing, and costs time.
+        let mut places = places;
+        let largest = places.iter().flatten().map(|c| c.amax()).fold(1.0, f64::max);
+        let says = |own: &[Vector3<f64>; 2]| own.iter().any(|c| c.amax() > ROUNDING * largest);
+        let count = places.iter().rposition(says).map_or(2, |last| last + 1).max(2);
+        places.truncate(count);
         // c'ₙ₋₁ = c'ₙ₊₁ + 2 n cₙ, in the variable from −1 to 1.
         let mut rates = vec![[Vector3::zeros(); 2]; count];
         for n in (1..count).rev() {
