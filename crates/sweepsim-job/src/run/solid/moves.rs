@@ -5,22 +5,10 @@
 //! pieces leave along the way; one that goes round its own direction surfaces of revolution about the arc's axis.
 //! What other motions of tools with an outline leave, [`swept`] has.
 
-use super::surfaces::{along, cross, cylinder, dot, plane, revolved_line, sphere, sub, torus, unit};
+use super::surfaces::{Piece, along, cross, cylinder, dot, plane, revolved_line, sphere, sub, torus, unit};
 use super::swept::swept;
 use sweepsim_motion::{Path, ProfileSegment, TipCourse, Tool, Turning};
 use sweepsim_solid::{EllipticSheet, Surface};
-
-/// A piece of a tool's outline, in distances from its axis and heights above its tip.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Piece {
-    Line([f64; 2], [f64; 2]),
-    Arc {
-        centre: [f64; 2],
-        radius: f64,
-    },
-    /// Where two pieces meet.
-    Rim([f64; 2]),
-}
 
 /// Directions closer than this are the same.
 const SAME: f64 = 1e-10;

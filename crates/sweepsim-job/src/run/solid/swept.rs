@@ -1,7 +1,6 @@
 //! The surfaces that moves leave on which the tool turns or winds.
 
-use super::moves::Piece;
-use super::surfaces::{along, cross, dot, sub};
+use super::surfaces::{Piece, along, cross, dot, sub};
 use sweepsim_motion::{Path, TipCourse};
 use sweepsim_solid::{Surface, SweptPiece, SweptSheet};
 
@@ -12,7 +11,10 @@ const REACH: f64 = 100.0;
 
 /// The surfaces that a move may leave, which is neither straight nor about the direction of the tool.
 pub(super) fn swept(tool: &[Piece], path: &Path, number: usize, is_still: bool) -> Vec<Surface> {
-    let pieces: Vec<SweptPiece> = tool.iter().flat_map(|piece| sweeping(*piece)).collect();
+    // On helices, walls are cylinders, and the sheets of rims fold all along them: their faces would hardly be found.
+    let taken = |piece: &&Piece| !is_still || matches!(piece, Piece::Arc { .. });
+    let pieces = tool.iter().filter(taken).flat_map(|piece| sweeping(*piece));
+    let pieces: Vec<SweptPiece> = pieces.collect();
     let arc = match path.way(number).course {
         TipCourse::Arc(arc) if is_still => Some(arc),
         _ => None,

@@ -71,6 +71,10 @@ fn tried(pieces: &[SweptPiece], far: &dyn Fn(f64, f64) -> f64, us: [f64; 2]) -> 
                 for off in [0.05, -0.05] {
                     let q = p + grows * off;
                     let (distance, direction) = sheet.at(q).unwrap();
+                    // The sheet itself may come nearer from elsewhere.
+                    if distance.abs() < f64::abs(off) - 1e-9 {
+                        continue;
+                    }
                     assert!((distance - off).abs() < 1e-9 && (direction - grows).norm() < 1e-7);
                     // No place of the piece is nearer, unless it comes by again, or the point is inside the tool.
                     let least = brute(q, far).abs();
