@@ -95,9 +95,7 @@ fn groove_of_a_ball_whose_axis_turns() {
     assert!(!notes.iter().any(|note| note.contains("triangle")), "{notes:?}");
 
     // Finer dexels tell the volume: lines do not meet the block's sides.
-    let fine = text
-        .replace("(64, 44)", "(640, 440)")
-        .replace("(-2, -2)", "(-2.0, -2.0)");
+    let fine = text.replace("(80, 55)", "(640, 440)");
     let plan = sweepsim_job::Request::from_job("fine.ron", fine).task(sweepsim_job::Task::Simulate);
     let dexels = plan.plan().unwrap().run(&()).unwrap().part().volume();
     let volume = part.bodies[0].volume.unwrap();
