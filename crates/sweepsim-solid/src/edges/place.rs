@@ -34,13 +34,16 @@ pub(crate) struct Placed {
     pub failed: Vec<u32>,
 }
 
+/// The places of two ends.
+type Bits = [[u64; 3]; 2];
+
 /// What was found in earlier rounds: vertices of the mesh keep their numbers and places, and labels their surfaces.
 #[derive(Default)]
 pub(crate) struct Known {
     /// Whether surfaces touch, by the vertices of a chain and its labels.
     touch: BTreeMap<(Vec<u32>, [u32; 2]), bool>,
     /// Edges, by the places of their ends as well.
-    edges: BTreeMap<(Vec<u32>, [u32; 2], [[u64; 3]; 2]), Option<Edge>>,
+    edges: BTreeMap<(Vec<u32>, [u32; 2], Bits), Option<Edge>>,
 }
 
 /// What a chain runs along.
@@ -126,7 +129,7 @@ fn labels_of(groups: &Groups, chain: &Chain) -> [u32; 2] {
     chain.faces.map(|face| groups.label[face as usize])
 }
 
-fn bits(ends: [Vector3<f64>; 2]) -> [[u64; 3]; 2] {
+fn bits(ends: [Vector3<f64>; 2]) -> Bits {
     ends.map(|end| [end.x, end.y, end.z].map(f64::to_bits))
 }
 
