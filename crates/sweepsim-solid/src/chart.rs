@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use sweepsim_dexel::AnalyticSurface as A;
 
 /// A surface with the side of it on which there is no material.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Label {
     pub surface: Surface,
     /// Whether distances from the surface grow out of the material.
@@ -16,7 +16,7 @@ pub(crate) struct Label {
 }
 
 /// A surface with a place where its angles begin.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Chart {
     pub surface: Surface,
     pub origin: Vector3<f64>,
@@ -44,25 +44,26 @@ pub(crate) fn wrapped(angle: f64) -> f64 {
 
 impl Chart {
     pub fn new(label: &Label) -> Self {
-        let (origin, axis) = match label.surface {
-            Surface::Analytic(A::Plane { origin, normal }) => (origin, normal),
-            Surface::Analytic(A::Cylinder { origin, axis, .. }) => (origin, axis),
-            Surface::Analytic(A::Cone { apex, axis, .. }) => (apex, axis),
-            Surface::Analytic(A::Sphere { centre, .. }) => (centre, label.pole.unwrap_or(Vector3::z()).into()),
-            Surface::Analytic(A::Torus { centre, axis, .. }) => (centre, axis),
+        let (origin, axis) = match &label.surface {
+            Surface::Analytic(A::Plane { origin, normal }) => (*origin, *normal),
+            Surface::Analytic(A::Cylinder { origin, axis, .. }) => (*origin, *axis),
+            Surface::Analytic(A::Cone { apex, axis, .. }) => (*apex, *axis),
+            Surface::Analytic(A::Sphere { centre, .. }) => (*centre, label.pole.unwrap_or(Vector3::z()).into()),
+            Surface::Analytic(A::Torus { centre, axis, .. }) => (*centre, *axis),
             Surface::Analytic(_) => ([0.0; 3], [0.0, 0.0, 1.0]),
             Surface::Elliptic(sheet) => {
                 return Self {
-                    surface: label.surface,
+                    surface: label.surface.clone(),
                     origin: sheet.centre(),
                     axes: sheet.axes,
                 };
             }
+            Surface::Swept(sheet) => (sheet.middle().into(), [0.0, 0.0, 1.0]),
         };
         let axis = Vector3::from(axis);
         let x = across(axis);
         Self {
-            surface: label.surface,
+            surface: label.surface.clone(),
             origin: origin.into(),
             axes: [x, axis.cross(&x), axis],
         }
@@ -70,9 +71,10 @@ impl Chart {
 
     /// Which of the two parameters are angles.
     pub fn periodic(&self) -> [bool; 2] {
-        match self.surface {
+        match &self.surface {
             Surface::Analytic(A::Plane { .. }) => [false, false],
             Surface::Analytic(A::Torus { .. }) => [true, true],
+            Surface::Swept(sheet) => [sheet.is_round(), false],
             _ => [true, false],
         }
     }
@@ -88,7 +90,7 @@ impl Chart {
     pub fn uv(&self, p: Vector3<f64>) -> [Option<f64>; 2] {
         let off = p - self.origin;
         let [x, y, z] = self.axes.map(|axis| axis.dot(&off));
-        match self.surface {
+        match &self.surface {
             Surface::Analytic(A::Plane { .. }) => [Some(x), Some(y)],
             Surface::Analytic(A::Sphere { .. }) => {
                 let lies = z.atan2(x.hypot(y));
@@ -103,23 +105,25 @@ impl Chart {
                 let (angle, height) = sheet.angle(p);
                 [Some(angle), Some(height)]
             }
+            Surface::Swept(sheet) => sheet.uv(p).map_or([None; 2], |uv| uv.map(Some)),
             Surface::Analytic(_) => [self.turn(off), Some(z)],
         }
     }
 
     /// Parameters in lengths rather than in angles, near a point.
     pub fn scale(&self) -> [f64; 2] {
-        match self.surface {
-            Surface::Analytic(A::Cylinder { radius, .. }) => [radius, 1.0],
-            Surface::Analytic(A::Sphere { radius, .. }) => [radius, radius],
-            Surface::Analytic(A::Torus { major, minor, .. }) => [major, minor],
+        match &self.surface {
+            Surface::Analytic(A::Cylinder { radius, .. }) => [*radius, 1.0],
+            Surface::Analytic(A::Sphere { radius, .. }) => [*radius, *radius],
+            Surface::Analytic(A::Torus { major, minor, .. }) => [*major, *minor],
+            Surface::Swept(sheet) => sheet.scale(),
             _ => [1.0, 1.0],
         }
     }
 
     /// Turns the chart so that an angle becomes half a turn: the farthest from where angles begin and end.
     pub fn turned_to(mut self, middle: f64) -> Self {
-        if let Surface::Elliptic(_) | Surface::Analytic(A::Plane { .. }) = self.surface {
+        if let Surface::Elliptic(_) | Surface::Swept(_) | Surface::Analytic(A::Plane { .. }) = self.surface {
             return self;
         }
         let (s, c) = (middle - PI).sin_cos();
@@ -132,7 +136,7 @@ impl Chart {
     /// The half planes through the axis at an angle and opposite, together.
     pub fn through_axis(&self, angle: f64) -> Surface {
         let (s, c) = angle.sin_cos();
-        let across = match self.surface {
+        let across = match &self.surface {
             Surface::Elliptic(sheet) => {
                 let along = sheet.point(angle, 0.0) - self.origin;
                 self.axes[2].cross(&along).normalize()

@@ -27,7 +27,7 @@ pub use parts::{Body, Face, SolidOptions};
 pub use solid::Solid;
 pub use step::{StepHeader, write_step};
 pub use summary::Summary;
-pub use surface::{EllipticSheet, Surface};
+pub use surface::{EllipticSheet, Surface, SweptPiece, SweptSheet};
 
 /// The README's example is tested.
 #[cfg(doctest)]

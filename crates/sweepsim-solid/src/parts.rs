@@ -1,6 +1,6 @@
 //! Parts of a solid, and what it is made with.
 
-use crate::surface::Surface;
+use crate::surface::{Surface, TensorSpline};
 use nalgebra::Vector3;
 
 /// An edge of a loop by its number, and whether it is passed from its start to its end.
@@ -55,6 +55,8 @@ pub struct Face {
     pub is_facet: bool,
     /// The least and the largest of both parameters.
     pub(crate) range: [[f64; 2]; 2],
+    /// Of what is swept, the B-spline that files have.
+    pub(crate) spline: Option<TensorSpline>,
 }
 
 /// A connected part of a solid.

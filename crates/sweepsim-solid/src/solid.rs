@@ -1,23 +1,26 @@
 //! The solid: surfaces, edges, and faces between them.
 
-use crate::edges::{Edge, Placed, chains, place};
+use crate::edges::{Edge, Known, Placed, chains, place};
 use crate::error::SolidError;
 use crate::faces::{Faces, faces, shells};
 use crate::label::{FREE, Groups, Labels, finer, labels, split};
 use crate::net::Net;
 use crate::parts::{Body, Face, SolidOptions};
 use crate::summary::{Summary, summary};
-use crate::surface::Surface;
+use crate::surface::{Surface, TensorSpline};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use sweepsim_dexel::{Mesh, SurfaceEnd, SurfaceEnds};
 
 /// How often faces that cannot be made are given up for triangles.
 const ROUNDS: usize = 40;
-/// How often triangles beside curved faces are made finer.
-const FINEST: usize = 12;
+/// How often triangles beside curved faces are made finer: in all, and before edges are found anew.
+const FINEST: usize = 48;
+const AT_ONCE: usize = 12;
 /// Smaller faces are given up as a whole.
 const SMALL: usize = 48;
+/// How far splines may be from what they are written for, in parts of the size of a tool's piece.
+const SPLINE: f64 = 2.5e-7;
 /// The most faces.
 const MOST_FACES: usize = 400_000;
 
@@ -62,6 +65,7 @@ impl Solid {
         let size = size(mesh);
         let mut labels = labels(&net, candidates, options.tolerance, size);
         let mut finest = 0;
+        let mut known = Known::default();
         // The last two rounds are for triangles alone.
         for round in 0..ROUNDS + 2 {
             if round == ROUNDS {
@@ -75,13 +79,15 @@ impl Solid {
                 });
             }
             let chains = chains(&net, &groups, &labels, options.cell);
-            let placed = place(&net, &groups, &labels, &chains, &options);
-            let made = faces(&net, &groups, &labels, &chains, &placed, options);
+            let mut placed = place(&net, &groups, &labels, &chains, &options, &mut known);
+            let mut made = faces(&net, &groups, &labels, &chains, &mut placed, options);
             let given_up = give_up(&net, &groups, &mut labels, &placed, &made);
             if given_up > 0 && round < ROUNDS {
                 continue;
             }
-            if finest < FINEST
+            let before = finest;
+            while finest < FINEST
+                && finest - before < AT_ONCE
                 && round < ROUNDS
                 && let Some((mesh, of_triangle)) = finer(&net, &labels, options.chord)
             {
@@ -89,9 +95,16 @@ impl Solid {
                 let mut ends = net.ends.into_owned();
                 ends.of_triangle = of_triangle;
                 net = Net::new(Cow::Owned(mesh), Cow::Owned(ends))?;
+            }
+            if finest > before {
                 continue;
             }
-            if round < ROUNDS && free_rough(&net, &groups, &mut labels, &placed, &made, 2.0 * options.chord) > 0 {
+            let rough = rough(&groups, &placed, &made, &options);
+            if round < ROUNDS && free(&net, &mut labels, &rough) > 0 {
+                continue;
+            }
+            let unfitted = fit(&groups, &mut made, &options);
+            if round < ROUNDS && free(&net, &mut labels, &unfitted) > 0 {
                 continue;
             }
             let open = open_edges(&placed, &made);
@@ -118,25 +131,51 @@ impl Solid {
     }
 }
 
-/// Takes the surface from faces with an edge that is farther from them than readers take, and says from how many ends.
-fn free_rough(net: &Net, groups: &Groups, labels: &mut Labels, placed: &Placed, made: &Faces, most: f64) -> usize {
+/// Takes the surface from triangles, and says from how many ends.
+fn free(net: &Net, labels: &mut Labels, triangles: &[u32]) -> usize {
     let mut freed = 0;
-    for group in (0..groups.count()).filter(|group| !groups.is_free(*group)) {
-        let Some(face) = made.of_group[group].map(|face| &made.all[face as usize]) else {
-            continue;
+    for triangle in triangles {
+        let label = &mut labels.of[net.end_of(*triangle as usize) as usize];
+        freed += usize::from(*label != FREE);
+        *label = FREE;
+    }
+    freed
+}
+
+/// The triangles of faces with an edge that is farther from them than readers take.
+fn rough(groups: &Groups, placed: &Placed, made: &Faces, options: &SolidOptions) -> Vec<u32> {
+    let is_rough = |group: &usize| {
+        let Some(face) = made.of(*group).first() else {
+            return false;
         };
         let edges = face.loops.iter().flatten();
         let mut edges = edges.filter_map(|(edge, _)| placed.edges[*edge as usize].as_ref());
-        let off = |edge: &Edge| (0..=8).any(|k| face.surface.off(edge.at(f64::from(k) / 8.0)) > most);
-        if edges.any(off) {
-            for triangle in groups.triangles(group) {
-                let label = &mut labels.of[net.end_of(*triangle as usize) as usize];
-                freed += usize::from(*label != FREE);
-                *label = FREE;
+        let off = |p: Vector3<f64>| face.surface.off(p) > 2.0 * options.chord;
+        edges.any(|edge| (0..=8).any(|k| off(edge.at(f64::from(k) / 8.0))))
+    };
+    let surfaces = (0..groups.count()).filter(|group| !groups.is_free(*group));
+    surfaces
+        .filter(is_rough)
+        .flat_map(|group| groups.triangles(group))
+        .copied()
+        .collect()
+}
+
+/// Finds splines for swept faces, and gives the triangles of those for which there are none.
+fn fit(groups: &Groups, made: &mut Faces, options: &SolidOptions) -> Vec<u32> {
+    let mut failed = Vec::new();
+    for group in 0..made.of_group.len() {
+        for number in made.of_group[group].clone() {
+            let face = &mut made.all[number as usize];
+            let Surface::Swept(sheet) = &face.surface else { continue };
+            let limit = (0.1 * options.tolerance).max(SPLINE * sheet.scale()[0]);
+            face.spline = TensorSpline::new(sheet, face.range, limit);
+            if face.spline.is_none() {
+                failed.extend(groups.triangles(group));
             }
         }
     }
-    freed
+    failed
 }
 
 /// How many edges are not passed once each way.

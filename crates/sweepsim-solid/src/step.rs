@@ -3,7 +3,7 @@
 use crate::edges::{Curve, Edge};
 use crate::parts::Face;
 use crate::solid::Solid;
-use crate::surface::{EllipticSheet, Surface};
+use crate::surface::{EllipticSheet, Surface, TensorSpline};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -186,37 +186,40 @@ impl Entities<'_> {
     fn surface(&mut self, face: &Face) -> io::Result<usize> {
         let [x, _, z] = face.axes;
         let mut at = |origin: [f64; 3]| self.placement(origin.into(), z, x);
-        match face.surface {
+        match &face.surface {
             Surface::Analytic(A::Plane { origin, .. }) => {
-                let at = at(origin)?;
+                let at = at(*origin)?;
                 self.add(&format!("PLANE('',#{at})"))
             }
             Surface::Analytic(A::Cylinder { origin, radius, .. }) => {
-                let at = at(origin)?;
-                self.add(&format!("CYLINDRICAL_SURFACE('',#{at},{})", real(radius)))
+                let at = at(*origin)?;
+                self.add(&format!("CYLINDRICAL_SURFACE('',#{at},{})", real(*radius)))
             }
             Surface::Analytic(A::Cone { apex, angle, .. }) => {
                 // The circle at the far end of the face.
                 let height = face.range[1][1];
-                let at = at((Vector3::from(apex) + z * height).into())?;
-                let (radius, angle) = (real(height * angle.tan()), real(angle));
+                let at = at((Vector3::from(*apex) + z * height).into())?;
+                let (radius, angle) = (real(height * angle.tan()), real(*angle));
                 self.add(&format!("CONICAL_SURFACE('',#{at},{radius},{angle})"))
             }
             Surface::Analytic(A::Sphere { centre, radius }) => {
-                let at = at(centre)?;
-                self.add(&format!("SPHERICAL_SURFACE('',#{at},{})", real(radius)))
+                let at = at(*centre)?;
+                self.add(&format!("SPHERICAL_SURFACE('',#{at},{})", real(*radius)))
             }
             Surface::Analytic(A::Torus {
                 centre, major, minor, ..
             }) => {
-                let at = at(centre)?;
-                self.add(&format!("TOROIDAL_SURFACE('',#{at},{},{})", real(major), real(minor)))
+                let at = at(*centre)?;
+                self.add(&format!("TOROIDAL_SURFACE('',#{at},{},{})", real(*major), real(*minor)))
             }
-            Surface::Analytic(_) => {
+            Surface::Analytic(_) | Surface::Swept(_) => {
+                if let Some(spline) = &face.spline {
+                    return self.tensor(spline);
+                }
                 let at = at([0.0; 3])?;
                 self.add(&format!("PLANE('',#{at})"))
             }
-            Surface::Elliptic(sheet) => self.sheet(&sheet, face.range),
+            Surface::Elliptic(sheet) => self.sheet(sheet, face.range),
         }
     }
 
@@ -244,6 +247,25 @@ impl Entities<'_> {
         let knots = reals(knots.iter().copied());
         self.add(&format!(
             "B_SPLINE_CURVE_WITH_KNOTS('',3,{points},.UNSPECIFIED.,.F.,.F.,{count},{knots},.UNSPECIFIED.)"
+        ))
+    }
+
+    /// A bicubic spline with double knots.
+    fn tensor(&mut self, spline: &TensorSpline) -> io::Result<usize> {
+        let mut rows = Vec::with_capacity(spline.points.len());
+        for row in &spline.points {
+            let points = row.iter().map(|p| self.point(*p)).collect::<io::Result<Vec<usize>>>()?;
+            rows.push(list(&points));
+        }
+        let counts = [0, 1].map(|k| multiplicities(spline.knots[k].len()));
+        let knots = [0, 1].map(|k: usize| reals(spline.knots[k].iter().copied()));
+        self.add(&format!(
+            "B_SPLINE_SURFACE_WITH_KNOTS('',3,3,({}),.UNSPECIFIED.,.F.,.F.,.F.,{},{},{},{},.UNSPECIFIED.)",
+            rows.join(","),
+            counts[0],
+            counts[1],
+            knots[0],
+            knots[1]
         ))
     }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Summary {
-    /// How many faces of each kind: `plane`, `cylinder`, `cone`, `sphere`, `torus`, `sheet`, `facet`.
+    /// How many faces of each kind: `plane`, `cylinder`, `cone`, `sphere`, `torus`, `sheet`, `spline`, `facet`.
     pub faces: BTreeMap<&'static str, usize>,
     /// The area of each kind, of the mesh.
     pub areas: BTreeMap<&'static str, f64>,
@@ -20,6 +20,8 @@ pub struct Summary {
     pub facet_deviation: f64,
     /// The largest distance of a vertex or an edge from the surfaces of its faces.
     pub gap: f64,
+    /// The largest distance found of a B-spline from the surface that it is written for: to be added to the others.
+    pub spline: f64,
 }
 
 impl Summary {
@@ -37,6 +39,9 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
     for face in &made.all {
         let kind = if face.is_facet { "facet" } else { face.surface.kind() };
         *summary.faces.entry(kind).or_default() += 1;
+        summary.spline = summary
+            .spline
+            .max(face.spline.as_ref().map_or(0.0, |spline| spline.off));
         for (edge, _) in face.loops.iter().flatten() {
             let Some(edge) = &placed.edges[*edge as usize] else {
                 continue;
@@ -48,7 +53,7 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
     }
     let mut nearest: BTreeMap<u32, f64> = BTreeMap::new();
     for group in 0..groups.count() {
-        let face = made.of_group[group].map(|face| &made.all[face as usize]);
+        let faces = made.of(group);
         let kind = match groups.label[group] {
             FREE => "facet",
             label => labels.all[label as usize].surface.kind(),
@@ -57,15 +62,14 @@ pub(crate) fn summary(net: &Net, groups: &Groups, labels: &Labels, placed: &Plac
             *summary.areas.entry(kind).or_default() += 0.5 * net.area(*triangle as usize).norm();
             let number = net.end_of(*triangle as usize);
             let end = &net.ends.ends[number as usize];
-            let Some(face) = face.filter(|_| end.normal.is_some()) else {
-                continue;
-            };
-            let off = face.surface.off(end.place.into());
-            if face.is_facet {
-                let least = nearest.entry(number).or_insert(f64::INFINITY);
-                *least = least.min(off);
-            } else {
-                summary.deviation = summary.deviation.max(off);
+            for face in faces.iter().filter(|_| end.normal.is_some()) {
+                let off = face.surface.off(end.place.into());
+                if face.is_facet {
+                    let least = nearest.entry(number).or_insert(f64::INFINITY);
+                    *least = least.min(off);
+                } else {
+                    summary.deviation = summary.deviation.max(off);
+                }
             }
         }
     }

@@ -7,4 +7,4 @@ mod trace;
 
 pub(crate) use chains::{Chains, chains};
 pub use curve::{Curve, Edge};
-pub(crate) use place::{Placed, place};
+pub(crate) use place::{Known, Placed, place};

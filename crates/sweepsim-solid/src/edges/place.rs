@@ -34,6 +34,18 @@ pub(crate) struct Placed {
     pub failed: Vec<u32>,
 }
 
+/// The places of two ends.
+type Bits = [[u64; 3]; 2];
+
+/// What was found in earlier rounds: vertices of the mesh keep their numbers and places, and labels their surfaces.
+#[derive(Default)]
+pub(crate) struct Known {
+    /// Whether surfaces touch, by the vertices of a chain and its labels.
+    touch: BTreeMap<(Vec<u32>, [u32; 2]), bool>,
+    /// Edges, by the places of their ends as well.
+    edges: BTreeMap<(Vec<u32>, [u32; 2], Bits), Option<Edge>>,
+}
+
 /// What a chain runs along.
 #[derive(Clone, Copy)]
 pub(crate) enum Between<'a> {
@@ -44,11 +56,18 @@ pub(crate) enum Between<'a> {
 }
 
 /// Finds the vertices and edges of the solid.
-pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains, scale: &SolidOptions) -> Placed {
+pub(crate) fn place(
+    net: &Net,
+    groups: &Groups,
+    labels: &Labels,
+    chains: &Chains,
+    scale: &SolidOptions,
+    known: &mut Known,
+) -> Placed {
     let between: Vec<Between> = chains
         .all
         .iter()
-        .map(|chain| between(net, groups, labels, chain, scale))
+        .map(|chain| between(net, groups, labels, chain, scale, known))
         .collect();
     let (nodes, mut failed) = nodes(net, groups, labels, chains, &between, scale);
     let mut numbers: BTreeMap<u32, u32> = nodes.keys().enumerate().map(|(k, v)| (*v, k as u32)).collect();
@@ -69,7 +88,12 @@ pub(crate) fn place(net: &Net, groups: &Groups, labels: &Labels, chains: &Chains
                 ends,
                 curve: Curve::Line,
             }),
-            Between::Surfaces(surfaces, touch) => course(net, chain, *surfaces, *touch, own, ends, scale).edge(),
+            Between::Surfaces(surfaces, touch) => {
+                let key = (chain.vertices.clone(), labels_of(groups, chain), bits(ends));
+                let make = || course(net, chain, *surfaces, *touch, own, ends, scale).edge();
+                let edge = known.edges.entry(key).or_insert_with(make).clone();
+                edge.map(|edge| Edge { vertices: own, ..edge })
+            }
         };
         if edge.is_none() {
             failed.extend(&chain.vertices);
@@ -101,8 +125,23 @@ fn some(chain: &Chain, count: usize) -> Vec<u32> {
     from.iter().step_by(step).copied().collect()
 }
 
-fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, scale: &SolidOptions) -> Between<'a> {
-    let [a, b] = chain.faces.map(|face| groups.label[face as usize]);
+fn labels_of(groups: &Groups, chain: &Chain) -> [u32; 2] {
+    chain.faces.map(|face| groups.label[face as usize])
+}
+
+fn bits(ends: [Vector3<f64>; 2]) -> Bits {
+    ends.map(|end| [end.x, end.y, end.z].map(f64::to_bits))
+}
+
+fn between<'a>(
+    net: &Net,
+    groups: &Groups,
+    labels: &'a Labels,
+    chain: &Chain,
+    scale: &SolidOptions,
+    known: &mut Known,
+) -> Between<'a> {
+    let [a, b] = labels_of(groups, chain);
     if a == FREE || b == FREE {
         return Between::Free;
     }
@@ -111,12 +150,15 @@ fn between<'a>(net: &Net, groups: &Groups, labels: &'a Labels, chain: &Chain, sc
         return Between::Surfaces([surface(a), plane], false);
     }
     let pair = [surface(a), surface(b)];
-    let looked_at = some(chain, 9);
-    let touching = looked_at
-        .iter()
-        .filter(|vertex| touches(net.place(**vertex), pair, scale))
-        .count();
-    Between::Surfaces(pair, 2 * touching > looked_at.len())
+    let touch = || {
+        let looked_at = some(chain, 9);
+        let touching = looked_at
+            .iter()
+            .filter(|vertex| touches(net.place(**vertex), pair, scale));
+        2 * touching.count() > looked_at.len()
+    };
+    let key = (chain.vertices.clone(), [a, b]);
+    Between::Surfaces(pair, *known.touch.entry(key).or_insert_with(touch))
 }
 
 /// Whether two surfaces have one tangent plane near a point, up to the tolerance.

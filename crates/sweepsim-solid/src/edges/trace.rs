@@ -160,7 +160,7 @@ impl<'a> Course<'a> {
     fn ellipse(&self) -> Option<Edge> {
         let [a, b] = self.surfaces.map(|surface| match surface {
             Surface::Analytic(surface) => Some(*surface),
-            Surface::Elliptic(_) => None,
+            _ => None,
         });
         let (normal, of, cylinder) = match (a?, b?) {
             (A::Plane { origin, normal }, cylinder) | (cylinder, A::Plane { origin, normal }) => {

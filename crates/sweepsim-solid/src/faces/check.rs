@@ -3,22 +3,35 @@
 use crate::chart::{Chart, wrapped};
 use crate::edges::Placed;
 use crate::parts::Use;
+use crate::surface::Surface;
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 /// The most points of a face whose loops are looked at for crossings.
 const MOST: usize = 60_000;
 
-/// The order of the loops with the outer one first, and the range of each parameter; `None` if they do not bound one
-/// face.
+/// Where edges of a face cross, if that is why there is none.
+pub(super) type Crossing = Option<Vector3<f64>>;
+
+/// A point of a loop in parameters, and in space.
+type Point = ([f64; 2], Vector3<f64>);
+
+/// The order of the loops with the outer one first, and the range of each parameter.
+///
+/// # Errors
+/// They do not bound one face.
 pub(super) fn outer_first(
     chart: &Chart,
     outward: bool,
     loops: &[Vec<Use>],
     placed: &Placed,
-) -> Option<(Vec<usize>, [[f64; 2]; 2])> {
+) -> Result<(Vec<usize>, [[f64; 2]; 2]), Crossing> {
     let mut polygons: Vec<Vec<[f64; 2]>> = Vec::with_capacity(loops.len());
+    let mut places: Vec<Vector3<f64>> = Vec::new();
     for own in loops {
-        polygons.push(polygon(chart, own, placed)?);
+        let points = polygon(chart, own, placed).ok_or(None)?;
+        places.extend(points.iter().map(|(_, place)| *place));
+        polygons.push(points.into_iter().map(|(uv, _)| uv).collect());
     }
     // All in the turn of the first.
     let periodic = chart.periodic();
@@ -27,7 +40,10 @@ pub(super) fn outer_first(
             continue;
         }
         let middle = |polygon: &[[f64; 2]]| polygon.iter().map(|p| p[k]).sum::<f64>() / polygon.len() as f64;
-        let largest = polygons.iter().max_by(|a, b| spread(a, k).total_cmp(&spread(b, k)))?;
+        let largest = polygons
+            .iter()
+            .max_by(|a, b| spread(a, k).total_cmp(&spread(b, k)))
+            .ok_or(None)?;
         let about = middle(largest);
         for polygon in &mut polygons {
             let own = middle(polygon);
@@ -38,14 +54,14 @@ pub(super) fn outer_first(
     let sign = if outward { 1.0 } else { -1.0 };
     let areas: Vec<f64> = polygons.iter().map(|polygon| sign * area(polygon)).collect();
     let outer: Vec<usize> = (0..areas.len()).filter(|k| areas[*k] > 0.0).collect();
-    let [outer] = outer[..] else { return None };
+    let [outer] = outer[..] else { return Err(None) };
     let scale = chart.scale();
     let scaled: Vec<Vec<[f64; 2]>> = polygons
         .iter()
         .map(|polygon| polygon.iter().map(|p| [p[0] * scale[0], p[1] * scale[1]]).collect())
         .collect();
-    if crosses(&scaled) {
-        return None;
+    if let Some(side) = crosses(&scaled) {
+        return Err(Some(places[side]));
     }
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for p in polygons.iter().flatten() {
@@ -54,10 +70,10 @@ pub(super) fn outer_first(
         }
     }
     if (0..2).any(|k| periodic[k] && range[k][1] - range[k][0] >= 2.0 * PI) {
-        return None;
+        return Err(None);
     }
     let inner = (0..loops.len()).filter(|k| *k != outer);
-    Some(([outer].into_iter().chain(inner).collect(), range))
+    Ok(([outer].into_iter().chain(inner).collect(), range))
 }
 
 fn spread(polygon: &[[f64; 2]], k: usize) -> f64 {
@@ -70,7 +86,7 @@ fn spread(polygon: &[[f64; 2]], k: usize) -> f64 {
 }
 
 /// A loop in parameters that do not jump; `None` if it does not come back to itself.
-fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<[f64; 2]>> {
+fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<Point>> {
     let mut points = Vec::new();
     for (edge, forward) in own {
         let edge = placed.edges[*edge as usize].as_ref()?;
@@ -80,16 +96,20 @@ fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<[f64; 2]>>
             samples.reverse();
             samples.pop();
         }
-        points.extend(samples.into_iter().map(|p| chart.uv(p)));
+        points.extend(samples.into_iter().map(|p| (chart.uv(p), p)));
+    }
+    let pointed = matches!(chart.surface, Surface::Analytic(_));
+    if !pointed && points.iter().any(|(uv, _)| uv[0].is_none()) {
+        return None;
     }
     // Beginning after a point without an angle, such as the tip of a cone, which then closes the loop.
-    if let Some(tip) = points.iter().position(|p| p[0].is_none()) {
+    if let Some(tip) = points.iter().position(|(uv, _)| uv[0].is_none()) {
         points.rotate_left(tip + 1);
     }
     let periodic = chart.periodic();
     let mut last: [Option<f64>; 2] = [None; 2];
-    let mut polygon: Vec<[f64; 2]> = Vec::with_capacity(points.len());
-    for p in &points {
+    let mut polygon: Vec<Point> = Vec::with_capacity(points.len());
+    for (p, place) in &points {
         let mut own = [0.0; 2];
         for k in 0..2 {
             own[k] = match (p[k], last[k]) {
@@ -100,12 +120,13 @@ fn polygon(chart: &Chart, own: &[Use], placed: &Placed) -> Option<Vec<[f64; 2]>>
             };
             last[k] = Some(own[k]);
         }
-        polygon.push(own);
+        polygon.push((own, *place));
     }
-    let (first, last) = (polygon.first()?, polygon.last()?);
+    let ((first, _), (last, _)) = (polygon.first()?, polygon.last()?);
     // At the tip of a cone, angles end and begin again.
-    let closes = (0..2)
-        .all(|k| points.last().is_some_and(|p| p[k].is_none()) || (first[k] - last[k]).abs() < PI || !periodic[k]);
+    let closes = (0..2).all(|k| {
+        points.last().is_some_and(|(uv, _)| uv[k].is_none()) || (first[k] - last[k]).abs() < PI || !periodic[k]
+    });
     closes.then_some(polygon)
 }
 
@@ -117,18 +138,20 @@ fn area(polygon: &[[f64; 2]]) -> f64 {
         .sum::<f64>()
 }
 
-/// Whether any two sides of the polygons cross.
-fn crosses(polygons: &[Vec<[f64; 2]>]) -> bool {
-    let mut sides: Vec<([f64; 2], [f64; 2])> = Vec::new();
+/// A side of the polygons that another crosses, counted through all of them.
+fn crosses(polygons: &[Vec<[f64; 2]>]) -> Option<usize> {
+    let mut sides: Vec<([f64; 2], [f64; 2], usize)> = Vec::new();
     for polygon in polygons {
         let next = polygon.iter().cycle().skip(1);
-        sides.extend(polygon.iter().copied().zip(next.copied()));
+        let before = sides.len();
+        let pairs = polygon.iter().zip(next).enumerate();
+        sides.extend(pairs.map(|(k, (from, to))| (*from, *to, before + k)));
     }
     if sides.len() > MOST {
-        return false;
+        return None;
     }
-    let low = |side: &([f64; 2], [f64; 2])| side.0[0].min(side.1[0]);
-    let high = |side: &([f64; 2], [f64; 2])| side.0[0].max(side.1[0]);
+    let low = |side: &([f64; 2], [f64; 2], usize)| side.0[0].min(side.1[0]);
+    let high = |side: &([f64; 2], [f64; 2], usize)| side.0[0].max(side.1[0]);
     sides.sort_by(|a, b| low(a).total_cmp(&low(b)));
     for (k, one) in sides.iter().enumerate() {
         for two in &sides[k + 1..] {
@@ -137,12 +160,12 @@ fn crosses(polygons: &[Vec<[f64; 2]>]) -> bool {
             }
             let outside =
                 one.0[1].max(one.1[1]) < two.0[1].min(two.1[1]) || two.0[1].max(two.1[1]) < one.0[1].min(one.1[1]);
-            if !outside && cross(*one, *two) {
-                return true;
+            if !outside && cross((one.0, one.1), (two.0, two.1)) {
+                return Some(one.2);
             }
         }
     }
-    false
+    None
 }
 
 /// Whether two sides cross in the inside of both.

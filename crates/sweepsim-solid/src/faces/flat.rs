@@ -4,7 +4,7 @@ use crate::edges::{Curve, Edge, Placed};
 use crate::parts::{SolidOptions, Use};
 use nalgebra::Vector3;
 
-/// Triangles lower than this, in cells, have no width.
+/// Triangles lower than this, in cells, have no width, unless it is more than edges may be from faces.
 const LOW: f64 = 2e-3;
 /// Places along an edge that are compared, and chords of the other.
 const COMPARED: usize = 8;
@@ -30,7 +30,7 @@ impl<'a> Flat<'a> {
             placed,
             instead: (0..placed.edges.len() as u32).map(|edge| vec![(edge, true)]).collect(),
             width: 4.0 * options.tolerance,
-            low: LOW * options.cell,
+            low: (LOW * options.cell).min(options.chord),
         }
     }
 

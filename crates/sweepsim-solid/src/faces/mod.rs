@@ -1,28 +1,51 @@
 //! Faces with their loops, checked in the parameters of their surfaces.
 
 mod check;
+mod facets;
 mod flat;
 mod shells;
 
 pub(crate) use shells::shells;
 
-use flat::{Flat, start};
+use check::Crossing;
+use facets::facets;
+use flat::Flat;
 
-use crate::chart::{Chart, across};
+use crate::chart::Chart;
 use crate::edges::{Chains, Placed};
 use crate::label::{FREE, Groups, Labels};
 use crate::net::Net;
 use crate::parts::{Face, SolidOptions, Use};
-use crate::surface::Surface;
 use nalgebra::Vector3;
-use sweepsim_dexel::AnalyticSurface as A;
+use std::ops::Range;
+
+/// So far from where edges cross, in cells, a face is given up for triangles.
+const NEAR: f64 = 1.5;
 
 /// The faces of a solid, and the triangles of those that could not be made.
 pub(crate) struct Faces {
     pub all: Vec<Face>,
-    /// Of each group of triangles its face: none if it fell together.
-    pub of_group: Vec<Option<u32>>,
+    /// Of each group of triangles its faces: none if it fell together, several where a triangle was cut.
+    pub of_group: Vec<Range<u32>>,
     pub failed: Vec<u32>,
+}
+
+impl Faces {
+    /// Those of a group.
+    pub fn of(&self, group: usize) -> &[Face] {
+        let Range { start, end } = self.of_group[group];
+        &self.all[start as usize..end as usize]
+    }
+}
+
+/// Triangles near one of a few points.
+fn near(net: &Net, triangles: &[u32], points: &[Vector3<f64>], cell: f64) -> Vec<u32> {
+    let is_near = |t: &&u32| {
+        let corners = net.mesh.triangles[**t as usize].map(|v| net.place(v));
+        let any = |at: &Vector3<f64>| corners.iter().any(|p| (p - at).norm() < NEAR * cell);
+        points.iter().any(any)
+    };
+    triangles.iter().filter(is_near).copied().collect()
 }
 
 /// Makes the faces of all groups.
@@ -31,12 +54,12 @@ pub(crate) fn faces(
     groups: &Groups,
     labels: &Labels,
     chains: &Chains,
-    placed: &Placed,
+    placed: &mut Placed,
     options: SolidOptions,
 ) -> Faces {
     let mut faces = Faces {
         all: Vec::new(),
-        of_group: vec![None; groups.count()],
+        of_group: vec![0..0; groups.count()],
         failed: Vec::new(),
     };
     let mut loops: Vec<Vec<Vec<Use>>> = Vec::with_capacity(groups.count());
@@ -54,68 +77,37 @@ pub(crate) fn faces(
     for group in (0..groups.count()).filter(|group| groups.is_free(*group)) {
         flat.triangle(&loops[group]);
     }
-    for group in 0..groups.count() {
-        let own = loops[group].iter().map(|own| flat.replaced(own));
-        let own: Vec<Vec<Use>> = own.filter(|own| !own.is_empty()).collect();
+    let replaced = |own: &Vec<Vec<Use>>| -> Vec<Vec<Use>> {
+        let own = own.iter().map(|own| flat.replaced(own));
+        own.filter(|own| !own.is_empty()).collect()
+    };
+    let loops: Vec<Vec<Vec<Use>>> = loops.iter().map(replaced).collect();
+    for (group, own) in loops.into_iter().enumerate() {
         if own.is_empty() {
             continue;
         }
-        let face = if groups.is_free(group) {
-            facet(net, groups.triangles(group)[0] as usize, own, placed)
+        let triangles = groups.triangles(group);
+        let made = if groups.is_free(group) {
+            facets(net, triangles[0] as usize, own, placed, 0.1 * options.chord).ok_or(None)
         } else {
-            curved(labels, groups.label[group], own, placed)
+            curved(labels, groups.label[group], own, placed).map(|face| vec![face])
         };
-        match face {
-            Some(face) => {
-                faces.of_group[group] = Some(faces.all.len() as u32);
-                faces.all.push(face);
+        match made {
+            Ok(made) => {
+                let first = faces.all.len() as u32;
+                faces.all.extend(made);
+                faces.of_group[group] = first..faces.all.len() as u32;
             }
-            None => faces.failed.extend(groups.triangles(group)),
+            Err(crossing) => {
+                let near = near(net, triangles, &Vec::from_iter(crossing), options.cell);
+                faces.failed.extend(if near.is_empty() { triangles } else { &near });
+            }
         }
     }
     faces
 }
 
-/// The plane of a triangle without a surface.
-fn facet(net: &Net, triangle: usize, loops: Vec<Vec<Use>>, placed: &Placed) -> Option<Face> {
-    let corners: Vec<Vector3<f64>> = loops.first()?.iter().filter_map(|used| start(used, placed)).collect();
-    if corners.len() < 3 {
-        return None;
-    }
-    // Twice the area of the polygon, along its normal.
-    let around = |k: usize| corners[(k + 1) % corners.len()] - corners[0];
-    let normal: Vector3<f64> = (0..corners.len())
-        .map(|k| (corners[k] - corners[0]).cross(&around(k)))
-        .sum();
-    let sides = (0..corners.len()).map(|k| around(k) + corners[0] - corners[k]);
-    let longest = sides.max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
-    let flat = 1e-6 * longest.norm_squared();
-    let own = net.area(triangle);
-    let moved = corners
-        .iter()
-        .any(|p| net.mesh.triangles[triangle].iter().all(|v| net.place(*v) != *p));
-    // Flat, or turned over by what moved its corners. The mesh has triangles without area, too.
-    if moved && (normal.norm() <= flat || own.norm() > flat && normal.dot(&own) <= 0.0) {
-        return None;
-    }
-    let along = longest.try_normalize(0.0)?;
-    let normal = normal.try_normalize(flat).unwrap_or_else(|| across(along));
-    let along = (along - normal * normal.dot(&along)).try_normalize(0.0)?;
-    let surface = Surface::Analytic(A::Plane {
-        origin: corners[0].into(),
-        normal: normal.into(),
-    });
-    Some(Face {
-        surface,
-        outward: true,
-        axes: [along, normal.cross(&along), normal],
-        loops,
-        is_facet: true,
-        range: [[0.0; 2]; 2],
-    })
-}
-
-fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) -> Option<Face> {
+fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) -> Result<Face, Crossing> {
     debug_assert!(label != FREE);
     let label = &labels.all[label as usize];
     let chart = Chart::new(label);
@@ -125,12 +117,13 @@ fn curved(labels: &Labels, label: u32, loops: Vec<Vec<Use>>, placed: &Placed) ->
     } else {
         chart
     };
-    Some(Face {
-        surface: label.surface,
+    Ok(Face {
+        surface: label.surface.clone(),
         outward: label.outward,
         axes: turned.axes,
         loops: order.into_iter().map(|k| loops[k].clone()).collect(),
         is_facet: false,
         range,
+        spline: None,
     })
 }

@@ -4,9 +4,10 @@ use crate::label::Groups;
 use crate::net::Net;
 use crate::parts::Body;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// The bodies of a solid: each an outer shell, with those of its hollows.
-pub(crate) fn shells(net: &Net, groups: &Groups, of_group: &[Option<u32>]) -> Vec<Body> {
+pub(crate) fn shells(net: &Net, groups: &Groups, of_group: &[Range<u32>]) -> Vec<Body> {
     let mut shell_of = vec![u32::MAX; net.triangles()];
     let mut volumes = Vec::new();
     for start in 0..net.triangles() {
@@ -32,8 +33,8 @@ pub(crate) fn shells(net: &Net, groups: &Groups, of_group: &[Option<u32>]) -> Ve
     }
     let mut faces: Vec<Vec<u32>> = vec![Vec::new(); volumes.len()];
     for group in 0..groups.count() {
-        if let (Some(face), Some(triangle)) = (of_group[group], groups.triangles(group).first()) {
-            faces[shell_of[*triangle as usize] as usize].push(face);
+        if let Some(triangle) = groups.triangles(group).first() {
+            faces[shell_of[*triangle as usize] as usize].extend(of_group[group].clone());
         }
     }
     let outer: Vec<usize> = (0..volumes.len())

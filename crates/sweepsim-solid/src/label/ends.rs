@@ -63,7 +63,7 @@ pub(crate) fn labels(net: &Net, candidates: &dyn Fn(&SurfaceEnd) -> Vec<Surface>
             if let Some(((_, outward), surface)) = nearest {
                 labels.of[*number as usize] = *known.entry(bits(surface, outward)).or_insert_with(|| {
                     labels.all.push(Label {
-                        surface: *surface,
+                        surface: surface.clone(),
                         outward,
                         pole: None,
                     });
@@ -83,23 +83,24 @@ pub(crate) fn labels(net: &Net, candidates: &dyn Fn(&SurfaceEnd) -> Vec<Surface>
 /// Equal surfaces to the bit have equal keys.
 fn bits(surface: &Surface, outward: bool) -> Vec<u64> {
     use sweepsim_dexel::AnalyticSurface as A;
-    let (kind, numbers): (u64, Vec<f64>) = match *surface {
+    let (kind, numbers): (u64, Vec<f64>) = match surface {
         Surface::Analytic(A::Plane { origin, normal }) => {
             // Which of its points it is given by does not matter.
-            let height = Vector3::from(origin).dot(&Vector3::from(normal));
+            let height = Vector3::from(*origin).dot(&Vector3::from(*normal));
             (0, [&normal[..], &[height]].concat())
         }
-        Surface::Analytic(A::Cylinder { origin, axis, radius }) => (1, [&origin[..], &axis[..], &[radius]].concat()),
-        Surface::Analytic(A::Cone { apex, axis, angle }) => (2, [&apex[..], &axis[..], &[angle]].concat()),
-        Surface::Analytic(A::Sphere { centre, radius }) => (3, [&centre[..], &[radius]].concat()),
+        Surface::Analytic(A::Cylinder { origin, axis, radius }) => (1, [&origin[..], &axis[..], &[*radius]].concat()),
+        Surface::Analytic(A::Cone { apex, axis, angle }) => (2, [&apex[..], &axis[..], &[*angle]].concat()),
+        Surface::Analytic(A::Sphere { centre, radius }) => (3, [&centre[..], &[*radius]].concat()),
         Surface::Analytic(A::Torus {
             centre,
             axis,
             major,
             minor,
-        }) => (4, [&centre[..], &axis[..], &[major, minor]].concat()),
+        }) => (4, [&centre[..], &axis[..], &[*major, *minor]].concat()),
         Surface::Elliptic(sheet) => (5, sheet.numbers().to_vec()),
-        Surface::Analytic(_) => (6, Vec::new()),
+        Surface::Swept(sheet) => (6, sheet.numbers()),
+        Surface::Analytic(_) => (7, Vec::new()),
     };
     let numbers = numbers.into_iter().map(|c| (c + 0.0).to_bits());
     [kind, u64::from(outward)].into_iter().chain(numbers).collect()

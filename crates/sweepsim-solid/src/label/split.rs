@@ -52,7 +52,7 @@ fn corners(net: &Net, groups: &Groups) -> Vec<bool> {
 /// Divides a face if it must be; says whether labels have changed.
 fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], face: usize, cell: f64) -> bool {
     let number = groups.label[face];
-    let label = labels.all[number as usize];
+    let label = labels.all[number as usize].clone();
     let triangles = groups.triangles(face);
     let place = |triangle: u32| Vector3::from(net.ends.ends[net.end_of(triangle as usize) as usize].place);
     let pole_needed = matches!(label.surface, Surface::Analytic(A::Sphere { .. })) && label.pole.is_none();
@@ -70,7 +70,7 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
                 .unwrap_or(Vector3::z());
             chart.axes = [across(axis), axis.cross(&across(axis)), axis];
             let angle = free_angle(net, groups, corners, face, &chart);
-            return cut(net, labels, groups, face, chart.through_axis(angle), label);
+            return cut(net, labels, groups, face, chart.through_axis(angle), label.clone());
         };
         let with_pole = Label {
             pole: Some(pole),
@@ -82,16 +82,24 @@ fn divide(net: &Net, labels: &mut Labels, groups: &Groups, corners: &[bool], fac
             labels.of[net.end_of(*triangle as usize) as usize] = own;
         }
         // Dividers that it had, it has still.
-        let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, *plane)).collect();
+        let old: Vec<_> = labels
+            .dividers
+            .iter()
+            .map(|(pair, plane)| (*pair, plane.clone()))
+            .collect();
         for ((a, b), plane) in old {
             if let Some(other) = [(a, b), (b, a)]
                 .into_iter()
                 .find_map(|(x, y)| (x == number).then_some(y))
             {
-                labels.dividers.insert((other.min(own), other.max(own)), plane);
+                labels.dividers.insert((other.min(own), other.max(own)), plane.clone());
             }
         }
         return true;
+    }
+    // What turns has no axis to divide it by: where it goes round, no face is found.
+    if matches!(label.surface, Surface::Swept(_)) {
+        return false;
     }
     for k in 0..2 {
         if chart.periodic()[k] && goes_round(net, groups, face, |p| angle(&chart, p, k, cell), &place) {
@@ -118,19 +126,23 @@ fn cut(net: &Net, labels: &mut Labels, groups: &Groups, face: usize, plane: Surf
         return false;
     }
     let first = labels.all.len() as u32;
-    labels.all.extend([label, label]);
+    labels.all.extend([label.clone(), label]);
     for triangle in triangles {
         labels.of[net.end_of(*triangle as usize) as usize] = first + u32::from(below(*triangle));
     }
     let number = groups.label[face];
-    let old: Vec<_> = labels.dividers.iter().map(|(pair, plane)| (*pair, *plane)).collect();
+    let old: Vec<_> = labels
+        .dividers
+        .iter()
+        .map(|(pair, plane)| (*pair, plane.clone()))
+        .collect();
     for ((a, b), before) in old {
         if let Some(other) = [(a, b), (b, a)]
             .into_iter()
             .find_map(|(x, y)| (x == number).then_some(y))
         {
             for own in [first, first + 1] {
-                labels.dividers.insert((other.min(own), other.max(own)), before);
+                labels.dividers.insert((other.min(own), other.max(own)), before.clone());
             }
         }
     }

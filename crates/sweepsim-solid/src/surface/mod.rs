@@ -1,19 +1,25 @@
 //! Surfaces that faces can be parts of.
 
 mod elliptic;
+mod swept;
+mod tensor;
 
 pub use elliptic::EllipticSheet;
 use nalgebra::Vector3;
 use sweepsim_dexel::AnalyticSurface;
+pub use swept::{SweptPiece, SweptSheet};
+pub(crate) use tensor::TensorSpline;
 
 /// A surface that a face can be part of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
     /// A plane, cylinder, cone, sphere or torus.
     Analytic(AnalyticSurface),
     /// What a circle, or the torus around one, leaves along a straight line.
     Elliptic(EllipticSheet),
+    /// What a piece of a tool leaves on a way on which it turns, or winds: written as a B-spline.
+    Swept(SweptSheet),
 }
 
 /// Surfaces are looked at this far around a point, in parts of a length, to see how they bend.
@@ -25,6 +31,7 @@ impl Surface {
         match self {
             Self::Analytic(surface) => surface.distance(p.into()).map(|(d, grows)| (d, grows.into())),
             Self::Elliptic(sheet) => sheet.distance(p),
+            Self::Swept(sheet) => sheet.at(p),
         }
     }
 
@@ -61,6 +68,7 @@ impl Surface {
             Self::Analytic(AnalyticSurface::Torus { .. }) => "torus",
             Self::Analytic(_) => "surface",
             Self::Elliptic(_) => "sheet",
+            Self::Swept(_) => "spline",
         }
     }
 
@@ -123,6 +131,7 @@ impl Surface {
                 _ => false,
             },
             (Self::Elliptic(a), Self::Elliptic(b)) => a.same(b, near, size, limit),
+            (Self::Swept(a), Self::Swept(b)) => a == b,
             _ => false,
         }
     }

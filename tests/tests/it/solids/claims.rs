@@ -39,14 +39,14 @@ fn ends_of_dexels_are_on_the_surfaces() {
     assert!(off.fold(0.0, f64::max) > 1e-3);
 }
 
-/// Where the tool's axis turns, no surface is known: triangles keep the solid closed, and are said.
+/// Where sheets fold, faces are not found: triangles keep the solid closed, and are said.
 #[test]
-fn five_axis_sheets_are_triangles() {
+fn folds_of_five_axis_sheets_are_triangles() {
     let tilted = "Path(tool: 1, poses: [((-10, 20, 12), (0, 0, 1)), ((30, 20, 11), (0.2, 0.1, 1)), ((70, 20, 12), (0, -0.2, 1))])";
-    let (part, note) = solid(&job("1: Flat(radius: 5, length: 30)", tilted));
+    let (part, note) = solid(&job("1: Flat(radius: 5, length: 30)", tilted).replace("(80, 55)", "(26, 18)"));
     let faces = kinds(&part);
-    // All planes, and many more than the block's: the sides, and the top in two.
-    assert!(faces["plane"] > 500 && note.contains("triangles are "), "{note}");
+    // Many more planes than the block's: the sides, and the top in two.
+    assert!(faces["plane"] > 100 && note.contains("triangles are "), "{note}");
     let [body] = &part.bodies[..] else {
         panic!("{} bodies", part.bodies.len())
     };
@@ -54,7 +54,7 @@ fn five_axis_sheets_are_triangles() {
     assert_eq!(triangles.check_closed(), Ok(()));
     let volume = body.volume.unwrap();
     assert!(
-        (volume - triangles.volume()).abs() < 1.0 && volume < 35_000.0,
+        (volume - triangles.volume()).abs() < 5.0 && volume < 35_000.0,
         "{volume}"
     );
 }

@@ -5,6 +5,7 @@ mod claims;
 mod fixtures;
 mod free_ends;
 mod parts;
+mod sheets;
 
 use std::collections::BTreeMap;
 use sweepsim_formats::{StepPart, parse_step};

@@ -3,13 +3,15 @@
 mod moves;
 mod stock;
 mod surfaces;
+mod swept;
 
 use crate::base::words::count as numbered;
 use crate::base::{JobError, Sink};
 use crate::session::{Session, phase};
-use moves::{Piece, left_by, pieces};
+use moves::{left_by, pieces};
 use std::collections::BTreeMap;
 use stock::StockSurfaces;
+use surfaces::Piece;
 use sweepsim_dexel::{Source, SurfaceEnd, TriDexels};
 use sweepsim_formats::Report;
 use sweepsim_solid::{Solid, SolidOptions, StepHeader, Summary, Surface, write_step};
@@ -17,13 +19,14 @@ use sweepsim_solid::{Solid, SolidOptions, StepHeader, Summary, Surface, write_st
 /// How far edges of triangles may be from the curved faces beside them, in millimetres: half of what readers take.
 const CHORD: f64 = 5e-4;
 /// Kinds of faces with one of them and several, in the order in which they are counted.
-const KINDS: [(&str, &str, &str); 7] = [
+const KINDS: [(&str, &str, &str); 8] = [
     ("plane", "plane", "planes"),
     ("cylinder", "cylinder", "cylinders"),
     ("cone", "cone", "cones"),
     ("sphere", "sphere", "spheres"),
     ("torus", "torus", "tori"),
     ("sheet", "ruled sheet", "ruled sheets"),
+    ("spline", "B-spline", "B-splines"),
     ("facet", "triangle", "triangles"),
 ];
 
@@ -100,8 +103,8 @@ fn in_words(solid: &Solid) -> String {
 fn distances(summary: &Summary) -> String {
     let mut text = format!(
         "Dexels end within {} mm of these surfaces, and edges are within {} mm of them",
-        at_most(summary.deviation),
-        at_most(summary.gap)
+        at_most(summary.deviation + summary.spline),
+        at_most(summary.gap + summary.spline)
     );
     if summary.faces.contains_key("facet") {
         let share = 100.0 * (1.0 - summary.share());

@@ -3,23 +3,12 @@
 //! All of them, whether they are on the part or not: which one the end of a dexel is on, its place and normal tell. A
 //! tool that stands leaves surfaces of revolution about its axis; one that moves straight without turning what its
 //! pieces leave along the way; one that goes round its own direction surfaces of revolution about the arc's axis.
-//! What other motions leave is not among them.
+//! What other motions of tools with an outline leave, [`swept`] has.
 
-use super::surfaces::{along, cross, cylinder, dot, plane, revolved_line, sphere, sub, torus, unit};
+use super::surfaces::{Piece, along, cross, cylinder, dot, plane, revolved_line, sphere, sub, torus, unit};
+use super::swept::swept;
 use sweepsim_motion::{Path, ProfileSegment, TipCourse, Tool, Turning};
 use sweepsim_solid::{EllipticSheet, Surface};
-
-/// A piece of a tool's outline, in distances from its axis and heights above its tip.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Piece {
-    Line([f64; 2], [f64; 2]),
-    Arc {
-        centre: [f64; 2],
-        radius: f64,
-    },
-    /// Where two pieces meet.
-    Rim([f64; 2]),
-}
 
 /// Directions closer than this are the same.
 const SAME: f64 = 1e-10;
@@ -84,6 +73,7 @@ pub(super) fn left_by(tool: &[Piece], path: &Path, number: usize) -> Vec<Surface
     let axis = from.axis();
     let turned = cross(axis, to.axis());
     if !still || dot(turned, turned) > SAME * SAME || dot(axis, to.axis()) < 0.0 {
+        all.extend(swept(tool, path, number, false));
         return all;
     }
     match way.course {
@@ -97,6 +87,10 @@ pub(super) fn left_by(tool: &[Piece], path: &Path, number: usize) -> Vec<Surface
             let arc = arc.through(from.tip(), to.tip());
             tool.iter()
                 .for_each(|piece| all.extend(round(*piece, from.tip(), axis, arc.centre(), arc.normal())));
+            let climb = dot(sub(to.tip(), from.tip()), arc.normal());
+            if climb.abs() > SAME || 1.0 - dot(axis, arc.normal()).abs() > SAME * SAME {
+                all.extend(swept(tool, path, number, true));
+            }
         }
     }
     all

@@ -1,7 +1,19 @@
-//! Surfaces by their measures.
+//! Pieces of tools, and surfaces by their measures.
 
 use sweepsim_dexel::AnalyticSurface;
 use sweepsim_solid::Surface;
+
+/// A piece of a tool's outline, in distances from its axis and heights above its tip.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Piece {
+    Line([f64; 2], [f64; 2]),
+    Arc {
+        centre: [f64; 2],
+        radius: f64,
+    },
+    /// Where two pieces meet.
+    Rim([f64; 2]),
+}
 
 /// Radii below this, in millimetres, are none.
 const LEAST: f64 = 1e-9;
