@@ -20,7 +20,7 @@ const STEEP: f64 = 3.0;
 pub struct Step {
     /// The line with material there, and the one without.
     pub lines: [[f64; 2]; 2],
-    /// Numbers of the squares on both sides of the edge between them; see [`Field`].
+    /// Numbers of the squares on both sides of the edge between them; see `Field`.
     pub squares: [[usize; 2]; 2],
     /// The heights.
     pub heights: [f64; 2],
