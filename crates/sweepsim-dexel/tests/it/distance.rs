@@ -1,23 +1,7 @@
-use crate::common::{dot, sub};
+use crate::common::{block, dot, sub};
 use sweepsim_dexel::internals::nearest_on;
 use sweepsim_dexel::*;
 use sweepsim_props::*;
-
-fn block(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
-    let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-    TriangleSoup {
-        triangles: triangles.map(|t| t.map(p)).collect(),
-    }
-}
 
 proptest! {
     /// The distance to a box has a formula.

@@ -1,26 +1,9 @@
+use crate::common::block as cube;
 use std::sync::Arc;
 use sweepsim_dexel::*;
 
 fn grid() -> Grid {
     Grid::new([-10.0, -10.0], [10.0, 10.0], [100, 100]).unwrap()
-}
-
-/// A box as 12 triangles, facing outwards.
-fn cube(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
-    let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads
-        .iter()
-        .flat_map(|q| [[p(q[0]), p(q[1]), p(q[2])], [p(q[0]), p(q[2]), p(q[3])]])
-        .collect();
-    TriangleSoup { triangles }
 }
 
 #[test]

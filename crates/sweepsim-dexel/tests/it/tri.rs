@@ -1,3 +1,4 @@
+use crate::common::boxed;
 use std::collections::BTreeMap;
 use sweepsim_dexel::internals::contour;
 use sweepsim_dexel::*;
@@ -84,18 +85,7 @@ fn turned_box(half: [f64; 3], axis: [f64; 3], angle: f64) -> (TriangleSoup, [[f6
         })
     };
     let corner = |n: usize| turn([0, 1, 2].map(|k| if n >> k & 1 == 0 { -half[k] } else { half[k] }));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-    let soup = TriangleSoup {
-        triangles: triangles.map(|t| t.map(corner)).collect(),
-    };
+    let soup = boxed(corner);
     (
         soup,
         [0, 1, 2].map(|k| turn([0, 1, 2].map(|c| if c == k { 1.0 } else { 0.0 }))),
