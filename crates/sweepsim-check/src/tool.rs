@@ -13,6 +13,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(crate) type P2 = [f64; 2];
 
+/// How much faster than the way a solid counts as becoming narrower beyond its ends.
+const STEEP: f64 = 1e3;
+
 /// The hull of corners and arcs `(ρ, ζ)`, turned about the axis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Body {
@@ -196,8 +199,11 @@ impl Body {
         best
     }
 
-    /// More than 0 if a point is in the tool by less than `margin`, or is not known to be; it grows with how far it is
-    /// outside. `None` of a solid that is no part of the tool.
+    /// More than 0 if a point is in the tool by less than `margin`, or is not known to be. `None` of a solid that is no
+    /// part of the tool.
+    ///
+    /// It is convex, so that a search along a line does not end beside the least: beyond its ends, the solid counts as
+    /// becoming narrower as fast as there, or almost so where it has a round end.
     pub fn off(&self, [rho, zeta]: P2, margin: f64) -> Option<f64> {
         let [low, high] = self.heights;
         let beyond = (low - zeta).max(zeta - high) + margin;
@@ -206,7 +212,8 @@ impl Body {
             .map(|zeta| self.width(zeta))
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        (!self.curves.is_empty()).then_some(beyond.max(rho + margin - width))
+        let narrower = STEEP * beyond.max(0.0);
+        (!self.curves.is_empty()).then_some((STEEP * beyond).max(rho + margin - width + narrower))
     }
 
     /// How far the curves are from the axis at a height.
