@@ -244,7 +244,7 @@ fn axes_beyond_their_limits_are_findings() {
 #[test]
 fn the_result_of_a_run_is_a_target() {
     let job = r#"Job(
-        grid: Grid(min: (0, 0), max: (20, 10), cells: (60, 30)),
+        grid: Grid(min: (0, 0), max: (20, 10), cells: (80, 40)),
         stock: Block(min: (0, 0, 0), max: (20, 10, 6)),
         tools: { 1: Ball(radius: 2, length: 30) },
         paths: [Path(tool: 1, poses: [((-4, 5, 3), (0, 0, 1)), ((24, 5, 3), (0, 0, 1))])],
