@@ -70,7 +70,7 @@ def test_ctrl_c_ends_a_run() -> None:
 
 
 def test_ctrl_c_leaves_nothing_half_written(tmp_path: Path) -> None:
-    outcome = sweepsim.simulate("fixtures/jobs/quickstart.ron", cells=(240, 240))
+    outcome = sweepsim.simulate("fixtures/jobs/quickstart.ron", cells=(150, 150))
     # What is made once is made by now.
     outcome.save(tmp_path / "first")
     start = time.monotonic()
