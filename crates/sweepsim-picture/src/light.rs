@@ -79,7 +79,12 @@ impl Lights {
         if scene.triangles.is_empty() {
             return Some(lights);
         }
-        lights.shadows = Some(DepthMaps::new(scene, &over_the_lamp(lamp), fine(LAMP_MAP, size), steps)?);
+        lights.shadows = Some(DepthMaps::new(
+            scene,
+            &over_the_lamp(lamp),
+            fine(LAMP_MAP, size),
+            steps,
+        )?);
         let count = sky_maps(scene);
         let sky = DepthMaps::new(scene, &over_the_sphere(count), fine(SKY_MAP, size), steps)?;
         lights.around = steps.step(|| around_vertices(scene, &sky, count))?;

@@ -3,6 +3,9 @@
 const FIELD = (28 * Math.PI) / 180;
 const SOON = matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : 450;
 
+/** Where the viewer stands, in degrees: around z, where −90 is the front, and above the horizon. From right above, nothing would say what is up in the picture. */
+const VIEWS = { corner: [-58, 36], front: [-90, 0], back: [90, 0], left: [180, 0], right: [0, 0], above: [-90, 88.9], below: [-90, -88.9] };
+
 /** Half the width and the height of a picture at distance 1. On narrow pictures the width is fixed, on wide ones the height. */
 function halves(aspect) {
   const half = Math.tan(FIELD / 2);
@@ -19,10 +22,9 @@ class Camera {
     this.home();
   }
 
-  /** The whole scene, from the front and above. */
-  home() {
-    this.azimuth = (-58 * Math.PI) / 180;
-    this.elevation = (36 * Math.PI) / 180;
+  /** The whole scene, from one of the `VIEWS`. */
+  home(view = "corner") {
+    [this.azimuth, this.elevation] = VIEWS[view].map((degrees) => (degrees * Math.PI) / 180);
     this.centre = mix(this.low, this.high, 0.5);
     this.reach = 0.5 * size(sub(this.high, this.low)) || 1;
     this.flight = null;

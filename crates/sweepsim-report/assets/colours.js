@@ -11,6 +11,7 @@ const FIXTURE = rgb("#56616f");
 const TARGET = rgb("#3f9c8f");
 const BODY = rgb("#8a929c");
 const MACHINE = rgb("#7f8ea3");
+const WIRE = rgb("#1c2733");
 const MEETING = rgb("#d1341f");
 const CUTTER = rgb("#e8b04a");
 

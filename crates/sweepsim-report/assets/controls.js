@@ -4,6 +4,30 @@ const $ = (id) => document.getElementById(id);
 const all = (selector) => [...document.querySelectorAll(selector)];
 const short = (x) => (Math.abs(x) < 5e-4 ? 0 : x).toFixed(3).replace("-", "−");
 
+/** Where it is seen from, the picture as a file, and the whole screen. */
+function pictureControls(viewer) {
+  const { camera, canvas } = viewer;
+  const seen = (view) => {
+    camera.home(view);
+    viewer.ask();
+  };
+  $("home").addEventListener("click", () => seen());
+  const view = $("view");
+  view.addEventListener("input", () => {
+    if (view.value) seen(view.value);
+    // It says what can be chosen, not where the viewer stands after turning.
+    view.value = "";
+  });
+  $("save").addEventListener("click", () => {
+    viewer.draw();
+    Object.assign(document.createElement("a"), { href: canvas.toDataURL(), download: "part.png" }).click();
+  });
+  const full = $("full");
+  full.hidden = !document.fullscreenEnabled;
+  full.addEventListener("click", () => (document.fullscreenElement ? document.exitFullscreen() : $("viewer").requestFullscreen()));
+  document.addEventListener("fullscreenchange", () => full.setAttribute("aria-pressed", String(document.fullscreenElement !== null)));
+}
+
 function sectionControls(viewer) {
   const { section } = viewer;
   const [select, slider, flip] = [$("section"), $("section-at"), $("section-flip")];

@@ -78,6 +78,9 @@ class Shape {
     this.buffers = [0, 1, 2].map(() => gl.createBuffer());
     this.indices = gl.createBuffer();
     this.count = 0;
+    /** The corners of its triangles, if their sides can be drawn. */
+    this.corners = null;
+    this.sides = null;
     gl.bindVertexArray(this.array);
     this.extra = [gl.createBuffer(), gl.createBuffer()];
     const layout = [
@@ -111,6 +114,7 @@ class Shape {
     gl.bindVertexArray(null);
     this.count = indices.length;
     this.mode = gl.TRIANGLES;
+    [this.corners, this.sides] = [indices, null];
   }
 
   colours(quads, colour) {
@@ -132,6 +136,23 @@ class Shape {
     gl.bindVertexArray(null);
     this.count = corners.length;
     this.mode = gl.TRIANGLES;
+    this.corners = corners;
+  }
+
+  /** The sides of its triangles become known, for `draw` with `wires`. */
+  trace() {
+    const { gl, corners } = this;
+    if (this.sides || !corners) return;
+    const lines = new Uint32Array(2 * corners.length);
+    // Numbers of the corners that begin and end the three sides: most end where it is known when a triangle is seen.
+    const order = [0, 2, 1, 2, 0, 1];
+    for (let k = 0; k < lines.length; k++) lines[k] = corners[3 * Math.floor(k / 6) + order[k % 6]];
+    this.sides = gl.createBuffer();
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sides);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, lines, gl.STATIC_DRAW);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+    gl.bindVertexArray(null);
   }
 
   /** Other corners of the same places, for `draw` with `coarse`. */
@@ -213,8 +234,8 @@ class Gpu {
     this.section = section;
   }
 
-  /** Draws a shape. Options: model, colour, alpha, unlit, uncut; banded: by the share of the limit; moment: what begins to be seen later is left out; behind: a little farther away than it is; coarse: by its coarser corners. */
-  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false, banded = false, moment = 1e9, behind = false, coarse = false } = {}) {
+  /** Draws a shape. Options: model, colour, alpha, unlit, uncut; banded: by the share of the limit; moment: what begins to be seen later is left out; behind: a little farther away than it is; coarse: by its coarser corners; wires: only the sides of its triangles. */
+  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false, banded = false, moment = 1e9, behind = false, coarse = false, wires = false } = {}) {
     if (!shape.count) return;
     const { gl, places, section } = this;
     gl.uniformMatrix4fv(places.model, false, model);
@@ -234,10 +255,14 @@ class Gpu {
       gl.depthMask(false);
       gl.enable(gl.CULL_FACE);
     }
+    if (wires) shape.trace();
+    const [mode, indices, count] = wires
+      ? [gl.LINES, shape.sides, 2 * shape.count]
+      : [shape.mode, coarse ? shape.coarseIndices : shape.indices, coarse ? shape.coarseCount : shape.count];
     gl.bindVertexArray(shape.array);
-    if (coarse) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.coarseIndices);
-    gl.drawElements(shape.mode, coarse ? shape.coarseCount : shape.count, gl.UNSIGNED_INT, 0);
-    if (coarse) gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.indices);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
+    gl.drawElements(mode, count, gl.UNSIGNED_INT, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.indices);
     gl.bindVertexArray(null);
     if (clear) {
       gl.disable(gl.CULL_FACE);

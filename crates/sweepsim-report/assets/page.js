@@ -78,10 +78,7 @@ function withViewer(viewer, markers) {
       viewer.ask();
     });
   }
-  $("home").addEventListener("click", () => {
-    viewer.camera.home();
-    viewer.ask();
-  });
+  pictureControls(viewer);
 
   sectionControls(viewer);
   const lineOf = (move) => {
@@ -134,16 +131,20 @@ function withViewer(viewer, markers) {
     $("play").setAttribute("aria-label", "Play the program");
   };
   const play = () => {
-    let clock = viewer.clock >= track.end ? 0 : viewer.clock;
+    const speed = $("speed");
+    const [first, last] = speed.value < 0 ? [track.end, 0] : [0, track.end];
+    let clock = viewer.clock === last ? first : viewer.clock;
     let before = performance.now();
     $("play").textContent = "❚❚";
     $("play").setAttribute("aria-label", "Pause");
     const next = (now) => {
-      clock = Math.min(clock + ((now - before) / 20000) * track.end, track.end);
+      // The whole program in twenty seconds, or a second of it in each.
+      const share = speed.value === "real" ? 1e-3 : (speed.value * track.end) / 20000;
+      clock = Math.min(Math.max(clock + (now - before) * share, 0), track.end);
       before = now;
       setClock(clock);
       playing = requestAnimationFrame(next);
-      if (clock >= track.end) stop();
+      if (clock === (share < 0 ? 0 : track.end)) stop();
     };
     playing = requestAnimationFrame(next);
   };
@@ -181,6 +182,7 @@ function withViewer(viewer, markers) {
       select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
       select.dispatchEvent(new Event("input"));
     } else if (key === "m") $("measure").click();
+    else if (key === "f") $("full").click();
   });
 
   // On paper: the picture as it is on the screen.

@@ -32,7 +32,7 @@ class Viewer {
       return { link, shape };
     });
     const meets = this.machine?.contacts.length > 0;
-    this.shown = { target: false, fixture: true, stock: false, tool: true, path: false, machine: meets, still: false };
+    this.shown = { part: true, mesh: false, target: false, fixture: true, stock: false, tool: true, path: false, machine: meets, still: false };
     this.clock = this.track?.end ?? 0;
     this.section = new Section(this);
     /** What is marked in the picture: points, lines between two of them, and a circle. */
@@ -201,8 +201,7 @@ class Viewer {
     gpu.begin(width, height, view, transformed(inverted(this.hold), camera.eye).slice(0, 3), this.section.plane);
     const coarse = this.sharp !== null && this.isCoarse;
     canvas.dataset.drawn = coarse ? shapes.sharp.coarseCount / 3 : this.sharp?.count ?? 0;
-    if (this.quads) gpu.draw(shapes.part, { model: this.frame, behind: this.sharp !== null });
-    if (this.sharp) gpu.draw(shapes.sharp, { banded: this.mode === "deviation", moment: moment < 0 ? 1e9 : moment, coarse });
+    if (shown.part) this.drawPart(moment < 0 ? 1e9 : moment, coarse);
     for (const name of this.fixtures()) gpu.draw(shapes[name], { colour: FIXTURE });
     canvas.dataset.setup = this.setup;
     if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
@@ -215,6 +214,16 @@ class Viewer {
     if (shown.target) gpu.draw(shapes.target, { colour: TARGET, alpha: 0.45 });
     canvas.dataset.camera = String(camera);
     this.ondraw?.();
+  }
+
+  drawPart(moment, coarse) {
+    const { gpu, shapes, sharp, frame: model, shown } = this;
+    const wires = { colour: WIRE, unlit: true, wires: true };
+    if (this.quads) gpu.draw(shapes.part, { model, behind: sharp !== null || shown.mesh });
+    if (sharp) gpu.draw(shapes.sharp, { banded: this.mode === "deviation", moment, coarse, behind: shown.mesh });
+    if (!shown.mesh || coarse) return;
+    if (this.quads) gpu.draw(shapes.part, { model, ...wires });
+    if (sharp) gpu.draw(shapes.sharp, { moment, ...wires });
   }
 
   /** The fixtures that are shown now. */
@@ -277,14 +286,15 @@ class Viewer {
 
   /** The solids that can be picked now, each with what tells whether a triangle of it is seen. */
   pickable() {
-    const { solids, sharp, moment } = this;
+    const { solids, moment } = this;
+    const [sharp, quads] = this.shown.part ? [this.sharp, this.quads] : [];
     const all = [];
     if (sharp) {
       solids.sharp ??= new Solid(sharp.places, sharp.corners);
       all.push([solids.sharp, (triangle) => sharp.isSeen(triangle, moment)]);
     }
-    if (this.quads) {
-      solids.part ??= new Solid(this.quads.places, this.quads.corners(), this.frame);
+    if (quads) {
+      solids.part ??= new Solid(quads.places, quads.corners(), this.frame);
       all.push([solids.part, null]);
     }
     for (const name of this.fixtures()) {

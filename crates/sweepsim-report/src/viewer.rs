@@ -60,6 +60,8 @@ pub(crate) fn markup(html: &mut String, scene: &Scene) {
         .as_ref()
         .is_some_and(|machine| !machine.contacts.is_empty());
     let switches = [
+        ("part", "Part", true, true),
+        ("mesh", "Mesh", true, false),
         ("target", "Target", has(SolidKind::Target), false),
         ("fixture", "Fixtures", has(SolidKind::Fixture), true),
         ("stock", "Stock", has(SolidKind::Stock), false),
@@ -81,7 +83,11 @@ pub(crate) fn markup(html: &mut String, scene: &Scene) {
          <button type=\"button\" id=\"section-flip\" aria-pressed=\"false\" hidden>Flip</button>\n\
          <button type=\"button\" id=\"measure\" aria-pressed=\"false\">Measure</button>\n\
          <label class=\"select\"><select id=\"measure-kind\" aria-label=\"What is measured\" hidden><option value=\"distance\">distance</option><option value=\"diameter\">diameter</option><option value=\"thickness\">thickness</option></select></label>\n\
+         </div>\n<div class=\"group\">\n\
+         <label class=\"select\"><select id=\"view\" aria-label=\"Seen from\"><option value=\"\">View</option><option value=\"corner\">corner</option><option value=\"front\">front</option><option value=\"back\">back</option><option value=\"left\">left</option><option value=\"right\">right</option><option value=\"above\">above</option><option value=\"below\">below</option></select></label>\n\
          <button type=\"button\" id=\"home\">Reset</button>\n\
+         <button type=\"button\" id=\"save\">Save picture</button>\n\
+         <button type=\"button\" id=\"full\" aria-pressed=\"false\">Full screen</button>\n\
          </div>\n</div>\n\
          <div class=\"canvas\"><canvas id=\"canvas\" tabindex=\"0\" role=\"application\" aria-label=\"The part in three dimensions: arrow keys turn it, with Shift they move it, plus and minus zoom, Home resets\" aria-describedby=\"keys\"></canvas>\n\
          <svg class=\"overlay\" id=\"overlay\"><g class=\"marks\" aria-hidden=\"true\"></g><g class=\"handles\" style=\"display:none\"><line/>\
@@ -91,9 +97,23 @@ pub(crate) fn markup(html: &mut String, scene: &Scene) {
          <output class=\"probe\" id=\"probe\" hidden></output>\n\
          <p class=\"hover\" id=\"hover\" hidden></p>\n\
          <p class=\"loading\" id=\"loading\">Loading …</p></div>\n\
-         <p class=\"keys\" id=\"keys\"><kbd>drag</kbd> turn <kbd>right drag</kbd> move <kbd>wheel</kbd> zoom <kbd>arrows</kbd> <kbd>+ −</kbd> <kbd>Home</kbd> <kbd>N P</kbd> findings <kbd>C</kbd> colours <kbd>S</kbd> section <kbd>M</kbd> measure</p>\n\
+         <p class=\"keys\" id=\"keys\"><kbd>drag</kbd> turn <kbd>right drag</kbd> move <kbd>wheel</kbd> zoom <kbd>arrows</kbd> <kbd>+ −</kbd> <kbd>Home</kbd> <kbd>N P</kbd> findings <kbd>C</kbd> colours <kbd>S</kbd> section <kbd>M</kbd> measure <kbd>F</kbd> full screen</p>\n\
          </div>\n<p class=\"without\" id=\"without\" hidden>This browser offers no WebGL, so the part is shown as a picture.</p>\n",
     );
+}
+
+/// How fast the program is played: in parts of the usual speed, or as a machine runs if its times are known.
+fn speeds(unit: &str) -> String {
+    let real = if unit == "s" {
+        "<option value=\"real\">real time</option>"
+    } else {
+        ""
+    };
+    format!(
+        "<label class=\"select\"><select id=\"speed\" aria-label=\"Speed\"><option value=\"0.25\">¼ ×</option>\
+         <option value=\"1\" selected>1 ×</option><option value=\"4\">4 ×</option>{real}\
+         <option value=\"-1\">backwards</option></select></label>\n"
+    )
 }
 
 /// The slider along the program.
@@ -106,7 +126,8 @@ pub(crate) fn timeline(html: &mut String, scene: Option<&Scene>) {
         "<div class=\"course\" id=\"course\" data-unit=\"{}\" hidden>\n\
          <button type=\"button\" id=\"play\" aria-label=\"Play the program\">▶</button>\n\
          <input type=\"range\" id=\"moment\" min=\"0\" max=\"10000\" value=\"10000\" step=\"1\" aria-label=\"Time in the program\">\n\
-         <output id=\"clock\"></output>\n<code id=\"now\"></code></div>\n",
-        escape(unit)
+         <output id=\"clock\"></output>\n{}<code id=\"now\"></code></div>\n",
+        escape(unit),
+        speeds(unit)
     );
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask browser`: the report of a faulty program in headless Chromium. Everything a person does with the page
 //! is done here by its buttons, keys and sliders, and must show; the screenshots of the docs are taken on the way.
 
+mod controls;
 mod devtools;
 mod large;
 mod walk;

@@ -1,7 +1,7 @@
 //! What is tried on the page.
 
 use super::devtools::Browser;
-use super::walls;
+use super::{controls, walls};
 use base64::Engine as _;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -13,9 +13,10 @@ const DESKTOP: [u32; 2] = [1280, 800];
 const PHONE: [u32; 2] = [390, 844];
 
 /// Name, size of the page, flags of the browser, and what to do.
-pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 8] {
+pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 9] {
     [
         ("mouse", DESKTOP, &[], mouse),
+        ("controls", DESKTOP, &[], controls::controls),
         ("keyboard", DESKTOP, &[], keyboard),
         ("phone", PHONE, &[], phone),
         ("walls", DESKTOP, &[], walls::walls),
@@ -54,7 +55,7 @@ pub(super) fn pixels(browser: &mut Browser) -> Result<Value, String> {
     browser.value(PIXELS)
 }
 
-fn camera(browser: &mut Browser) -> Result<Value, String> {
+pub(super) fn camera(browser: &mut Browser) -> Result<Value, String> {
     browser.wait("!document.getElementById('canvas').dataset.flying")?;
     pixels(browser)?;
     browser.value("document.getElementById('canvas').dataset.camera")
@@ -207,7 +208,7 @@ fn keyboard(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<St
     browser.open(report)?;
     // All controls can be reached, and it shows where one is.
     let mut reached = Vec::new();
-    for _ in 0..40 {
+    for _ in 0..60 {
         browser.key("Tab")?;
         let now = browser.value(
             "(() => { const e = document.activeElement; const s = getComputedStyle(e);

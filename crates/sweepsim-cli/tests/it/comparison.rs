@@ -31,7 +31,11 @@ fn compared(workdir: &Workdir, part: &str, target: &str) -> ComparisonReport {
 /// the interval.
 fn forms_tell(workdir: &Workdir, part: &str, target: &str, size: f64, off: f64) {
     // Of a part and itself, all that is asked of two parts holds by fewer of them.
-    let pairs: &[[usize; 2]] = if part == target { &[[0, 2], [1, 1]] } else { &[[0, 0], [0, 2], [1, 1], [1, 2], [2, 2]] };
+    let pairs: &[[usize; 2]] = if part == target {
+        &[[0, 2], [1, 1]]
+    } else {
+        &[[0, 0], [0, 2], [1, 1], [1, 2], [2, 2]]
+    };
 
     for &[i, j] in pairs {
         let (form, other) = (FORMS[i], FORMS[j]);

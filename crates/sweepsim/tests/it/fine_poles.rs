@@ -96,7 +96,13 @@ fn poles_as_flat_as_a_cubic_cost_little_by_default() {
     const DEAREST: f64 = 10.0;
     let distances = [1e-9, 0.0];
     let of_tool = |(name, tool): &(&str, Tool)| {
-        dear_at_fine_tolerances((name, tool), &[Method::Mixed], &over_poles(), &distances, (&FEW, DEAREST))
+        dear_at_fine_tolerances(
+            (name, tool),
+            &[Method::Mixed],
+            &over_poles(),
+            &distances,
+            (&FEW, DEAREST),
+        )
     };
     let wrong: Vec<String> = flat_poles().iter().flat_map(of_tool).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
