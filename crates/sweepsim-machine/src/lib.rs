@@ -20,6 +20,8 @@ pub use matter::{Matter, meets};
 pub use search::{Contact, Limits, Outcome, contacts};
 pub use shape::{Body, Convex};
 
+pub use nalgebra;
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

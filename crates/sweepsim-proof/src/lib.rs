@@ -26,6 +26,8 @@ pub use solid::{Fault, Target};
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};
 
+pub use {sweepsim_dexel, sweepsim_motion};
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -29,6 +29,8 @@ pub use step::{StepHeader, write_step};
 pub use summary::Summary;
 pub use surface::{EllipticSheet, Surface, SweptPiece, SweptSheet};
 
+pub use sweepsim_dexel as dexel;
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
