@@ -218,7 +218,7 @@ class Viewer {
 
   drawPart(moment, coarse) {
     const { gpu, shapes, sharp, frame: model, shown } = this;
-    const wires = { colour: WIRE, unlit: true, wires: true };
+    const wires = { colour: WIRE, alpha: 0.18, unlit: true, wires: true };
     if (this.quads) gpu.draw(shapes.part, { model, behind: sharp !== null || shown.mesh });
     if (sharp) gpu.draw(shapes.sharp, { banded: this.mode === "deviation", moment, coarse, behind: shown.mesh });
     if (!shown.mesh || coarse) return;
