@@ -2,6 +2,7 @@
 
 use crate::cell::Cell;
 use crate::certificate::{Claim, Tree, unpacked};
+use crate::clear::Clear;
 use crate::height::{Left, off};
 use crate::motion::{Run, Stretch};
 use crate::patch::patches;
@@ -10,6 +11,7 @@ use crate::surface::Surface;
 use crate::tool::{Body, bodies};
 use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
 use crate::walk::{Failed, Found, Walk};
+use crate::zone::Ring;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -74,10 +76,8 @@ fn found(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> R
     if claim.about != question.about || !claim.bound.is_finite() || !is_length(scene.deviation) {
         return Err("the claim does not answer the question".into());
     }
-    let triangles = scene.solids.get(question.solid).ok_or("there is no such solid")?;
-    let surface = Surface::new(triangles)?;
     let mut movers: Vec<Vec<Body>> = Vec::with_capacity(question.movers.len());
-    for (number, (path, outline)) in question.movers.iter().enumerate() {
+    for (number, (path, outline)) in question.movers.iter().chain(&question.cutters).enumerate() {
         let (outline, cover) = (scene.outlines.get(*outline), claim.covers.get(number));
         let (outline, cover) = outline
             .zip(cover)
@@ -85,10 +85,68 @@ fn found(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> R
         movers.push(bodies(outline, cover)?);
         scene.paths.get(*path).ok_or("something that moves has no path")?;
     }
-    match question.measure {
-        Measure::Depth => depth(scene, (question, &movers), claim, &surface, threads),
-        Measure::Height => height(scene, (question, &movers), claim, &surface, threads),
+    let cutters = movers.split_off(question.movers.len());
+    let asked = (question, &movers[..]);
+    if matches!(question.measure, Measure::Material | Measure::MaterialInRapids) {
+        return material(scene, asked, &cutters, claim, threads);
     }
+    let triangles = scene.solids.get(question.solid).ok_or("there is no such solid")?;
+    let surface = Surface::new(triangles)?;
+    match question.measure {
+        Measure::Height => height(scene, asked, claim, &surface, threads),
+        _ => depth(scene, asked, claim, &surface, threads),
+    }
+}
+
+/// Whether each solid of each mover has trees about all of its path, once: where one ends, the next begins.
+fn each_once(scene: &Scene, (question, movers): Asked, trees: &[Tree]) -> Result<(), String> {
+    let mut ends: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for tree in trees {
+        let end = ends.entry((tree.mover, tree.solid)).or_default();
+        if *end != tree.first || tree.count == 0 || tree.count > MOST_MOTIONS {
+            return Err("the trees are not about each motion once".into());
+        }
+        *end += tree.count;
+    }
+    for (mover, own) in movers.iter().enumerate() {
+        let path = question.movers[mover].0;
+        let is_whole = |solid: usize| ends.remove(&(mover, solid)).unwrap_or(0) == scene.paths[path].len();
+        if !(0..own.len()).all(is_whole) {
+            return Err(format!("not all motions of path {path} have a tree"));
+        }
+    }
+    ends.is_empty()
+        .then_some(())
+        .ok_or("there are trees of other paths or tools".into())
+}
+
+fn material(
+    scene: &Scene,
+    (question, movers): Asked,
+    cutters: &[Vec<Body>],
+    claim: &Claim,
+    threads: usize,
+) -> Result<Found, String> {
+    if claim.witness.is_some() {
+        return Err("depths in material have no witness".into());
+    }
+    each_once(scene, (question, movers), &claim.trees)?;
+    let cuts = |path: usize| {
+        let all = scene.paths[path].iter().enumerate();
+        let cuts = all.filter(|(_, motion)| !motion.possible && !motion.idle);
+        cuts.map(|(number, _)| number).collect()
+    };
+    let cutters = question.cutters.iter().zip(cutters);
+    let clear = Clear {
+        scene,
+        cutters: cutters.map(|((path, _), bodies)| (&bodies[..], *path, cuts(*path))).collect(),
+        idle_only: question.measure == Measure::MaterialInRapids,
+        bound: claim.bound,
+    };
+    all(&claim.trees, threads, |tree, bytes| {
+        let body = &movers[tree.mover][tree.solid];
+        clear.walked(body, question.movers[tree.mover].0, [tree.first, tree.count], bytes)
+    })
 }
 
 /// What is found of some trees, by so many threads.
@@ -134,28 +192,7 @@ fn depth(
     if !(is_good && (0..3).all(holds)) {
         return Err("the cube of the certificate does not hold the solid".into());
     }
-    // Each solid of each mover on all of its path, once: where one tree ends, the next begins.
-    let mut ends: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    for tree in &claim.trees {
-        let end = ends.entry((tree.mover, tree.solid)).or_default();
-        if *end != tree.first || tree.count == 0 || tree.count > MOST_MOTIONS {
-            return Err("the trees are not about each motion once".into());
-        }
-        *end += tree.count;
-    }
-    for (mover, own) in movers.iter().enumerate() {
-        let length = scene.paths[question.movers[mover].0].len();
-        let is_whole = |solid: usize| ends.remove(&(mover, solid)).unwrap_or(0) == length;
-        if !(0..own.len()).all(is_whole) {
-            return Err(format!(
-                "not all motions of path {} have a tree",
-                question.movers[mover].0
-            ));
-        }
-    }
-    if !ends.is_empty() {
-        return Err("there are trees of other paths or tools".into());
-    }
+    each_once(scene, (question, movers), &claim.trees)?;
     let root = Cell::root(centre, half, claim.lift, surface);
     let one = |tree: &Tree, bytes: &[u8]| {
         let path = question.movers[tree.mover].0;
@@ -206,7 +243,7 @@ fn witness(scene: &Scene, (question, movers): Asked, claim: &Claim, surface: &Su
     let is_in = |body: &Body| {
         let middle = add(&at.tip, &scaled(&at.axis, 0.5 * (body.heights[0] + body.heights[1])));
         let inner = add(&place, &scaled(&sub(&middle, &place), INNER));
-        let is_in = off(body, &at, &inner, 0.0) <= 0.0;
+        let is_in = off(body, &at, &Ring::point(inner), 0.0) <= 0.0;
         let deep = surface.nearest(&place).0 - (norm_up(&sub(&inner, &place)) + scene.deviation) * MORE;
         is_in && deep >= witness.depth
     };

@@ -19,8 +19,9 @@ use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::surface::{Surface, nearest_of};
 use crate::tool::Body;
-use crate::vector::{V3, add, dot, norm, norm_up, scaled, sub};
+use crate::vector::{V3, add, cross, dot, norm, norm_up, scaled, sub};
 use crate::walk::{DEEPEST, Found, Reader};
+use crate::zone::Ring;
 
 /// All that is needed of a question about a height.
 pub(crate) struct Left<'a> {
@@ -104,7 +105,7 @@ impl Left<'_> {
                 } else {
                     Some(reader.float()?)
                 };
-                within.iter().all(|p| self.removes(body, &stretch, time, p))
+                { within.iter() }.all(|p| removes(body, &stretch, (time, 1.0), &Ring::point(*p), self.scene.margin))
             }
             _ => return None,
         };
@@ -113,58 +114,74 @@ impl Left<'_> {
 
     /// Points whose hull has all of the stock that is in the hull of some.
     fn within(&self, points: &[V3]) -> Vec<V3> {
-        let margin = self.scene.margin;
-        let mut all = Vec::new();
-        for region in &self.scene.stock {
-            if region
-                .iter()
-                .any(|(n, c)| points.iter().all(|p| dot(n, p) > c + margin))
-            {
-                continue;
-            }
-            let cut = |points: Vec<V3>, (n, c): &(V3, f64)| match points.len() {
-                ..=MOST_POINTS => below(points, |p| dot(n, p) - (c + margin)),
-                _ => points,
-            };
-            all.extend(region.iter().take(CUT).fold(points.to_vec(), cut));
-        }
-        all
-    }
-
-    /// Whether a point is in a solid at a time, or at some time of a straight stretch.
-    fn removes(&self, body: &Body, stretch: &Stretch, time: Option<f64>, p: &V3) -> bool {
-        let of = |t: f64| off(body, &stretch.at(t), p, self.scene.margin);
-        if let Some(time) = time {
-            return (0.0..=1.0).contains(&time) && of(time) <= 0.0;
-        }
-        // The time at which it is nearest to the axis; if the solid also rises, the best one is near.
-        let [from, to] = &stretch.ends;
-        let way = sub(&to.tip, &from.tip);
-        let across = sub(&way, &scaled(&from.axis, dot(&way, &from.axis)));
-        let near = dot(&sub(p, &from.tip), &across) / dot(&across, &across).max(f64::MIN_POSITIVE);
-        if [near.clamp(0.0, 1.0), 0.0, 1.0].iter().any(|t| of(*t) <= 0.0) {
-            return true;
-        }
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..STEPS {
-            let third = (high - low) / 3.0;
-            let (a, b) = (of(low + third), of(high - third));
-            if a.min(b) <= 0.0 {
-                return true;
-            }
-            if a < b { high -= third } else { low += third }
-        }
-        false
+        within(self.scene, points, self.scene.margin)
     }
 }
 
-/// How far a point is outside of a solid: not more than 0 if it is inside by a margin.
-pub(crate) fn off(body: &Body, at: &Placement, p: &V3, margin: f64) -> f64 {
-    let from = sub(p, &at.tip);
+/// The same, of the stock and all that is nearer to it than `margin`: planes are so much farther out.
+pub(crate) fn within(scene: &Scene, points: &[V3], margin: f64) -> Vec<V3> {
+    let mut all = Vec::new();
+    for region in &scene.stock {
+        if region
+            .iter()
+            .any(|(n, c)| points.iter().all(|p| dot(n, p) > c + margin))
+        {
+            continue;
+        }
+        let cut = |points: Vec<V3>, (n, c): &(V3, f64)| match points.len() {
+            ..=MOST_POINTS => below(points, |p| dot(n, p) - (c + margin)),
+            _ => points,
+        };
+        all.extend(region.iter().take(CUT).fold(points.to_vec(), cut));
+    }
+    all
+}
+
+/// Whether a solid holds a ring by a margin: at a time, or without one at some time up to the `latest` of a straight
+/// stretch.
+pub(crate) fn removes(
+    body: &Body,
+    stretch: &Stretch,
+    (time, latest): (Option<f64>, f64),
+    ring: &Ring,
+    margin: f64,
+) -> bool {
+    let of = |t: f64| off(body, &stretch.at(t), ring, margin);
+    if let Some(time) = time {
+        return (0.0..=latest).contains(&time) && of(time) <= 0.0;
+    }
+    // The time at which it is nearest to the axis; if the solid also rises, the best one is near.
+    let [from, to] = &stretch.ends;
+    let way = sub(&to.tip, &from.tip);
+    let across = sub(&way, &scaled(&from.axis, dot(&way, &from.axis)));
+    let near = dot(&sub(&ring.centre, &from.tip), &across) / dot(&across, &across).max(f64::MIN_POSITIVE);
+    if [near.clamp(0.0, latest), 0.0, latest].iter().any(|t| of(*t) <= 0.0) {
+        return true;
+    }
+    let (mut low, mut high) = (0.0, latest);
+    for _ in 0..STEPS {
+        let third = (high - low) / 3.0;
+        let (a, b) = (of(low + third), of(high - third));
+        if a.min(b) <= 0.0 {
+            return true;
+        }
+        if a < b { high -= third } else { low += third }
+    }
+    false
+}
+
+/// How far a ring is outside of a solid, at most: not more than 0 if it is inside by a margin.
+///
+/// Its points are no farther from the axis of the solid than its centre and its radius, at heights around that of the
+/// centre. How far a point is outside is convex, and does not fall away from the axis.
+pub(crate) fn off(body: &Body, at: &Placement, ring: &Ring, margin: f64) -> f64 {
+    let from = sub(&ring.centre, &at.tip);
     let along = dot(&from, &at.axis);
-    let across = norm(&sub(&from, &scaled(&at.axis, along)));
-    let margin = margin + at.tip_error + 4.0 * at.axis_error * norm(&from);
-    body.off([across, along], margin).unwrap_or(f64::INFINITY)
+    let across = norm(&sub(&from, &scaled(&at.axis, along))) + ring.radius;
+    let rise = ring.radius * norm(&cross(&ring.axis, &at.axis));
+    let margin = margin + ring.thick + at.tip_error + 4.0 * at.axis_error * (norm(&from) + ring.radius);
+    let level = |height: f64| body.level([across, height]).unwrap_or(f64::INFINITY);
+    level(along - rise).max(level(along + rise)) + margin
 }
 
 /// Points whose hull is what of the hull of some points is below a plane. `above`: how far one is above it.
@@ -180,7 +197,7 @@ fn below(points: Vec<V3>, above: impl Fn(&V3) -> f64) -> Vec<V3> {
     kept
 }
 
-fn around(points: &[V3]) -> [V3; 2] {
+pub(crate) fn around(points: &[V3]) -> [V3; 2] {
     let of = |pick: fn(f64, f64) -> f64| [0, 1, 2].map(|k| points.iter().map(|p| p[k]).reduce(pick).unwrap_or(0.0));
     [of(f64::min), of(f64::max)]
 }

@@ -7,6 +7,7 @@
 mod cell;
 mod certificate;
 mod check;
+mod clear;
 mod height;
 mod leaf;
 mod motion;
@@ -18,6 +19,7 @@ mod tests;
 mod tool;
 mod vector;
 mod walk;
+mod zone;
 
 pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, Tree, Witness, digest_of, packed};
 pub use check::{Checked, check};

@@ -1,5 +1,6 @@
 //! What there was before the first cut.
 
+use super::bounding::{Bound, Weights, bounding};
 use super::surface::Points;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
@@ -16,7 +17,7 @@ pub(crate) struct Before {
 /// Something that a stock is within.
 enum Outer {
     /// The points with `⟨n, x⟩ ≤ c` for all of some unit vectors `n`.
-    Planes(Vec<(Vector3<f64>, f64)>),
+    Planes(Vec<Bound>),
     Mesh(DistanceTo),
 }
 
@@ -164,11 +165,41 @@ impl Before {
     pub fn near(&self, mut points: Points, distance: f64) -> Points {
         if let Shape::Block([low, high]) | Shape::Within([low, high]) = &self.shape {
             for k in 0..3 {
-                points = below(points, |point| point[k] - (high[k] + distance));
-                points = below(points, |point| low[k] - distance - point[k]);
+                for side in [1.0, -1.0] {
+                    let end = if side > 0.0 { high[k] } else { low[k] };
+                    if points.len() <= MOST_POINTS {
+                        points = below(points, |point| side * (point[k] - end) - distance);
+                    }
+                }
             }
         }
         points
+    }
+
+    /// For each region that holds the stock, some of its planes, each with a weight: the sum has the region below it,
+    /// and something above, by a distance. `over`: whether that is so, for a direction and a height along it; `normal`:
+    /// the direction that is tried if no plane will do alone. `None` of a mesh, or if it is not so.
+    pub fn planes_below(
+        &self,
+        over: &dyn Fn(&Vector3<f64>, f64) -> bool,
+        normal: &Vector3<f64>,
+        distance: f64,
+    ) -> Option<Vec<Weights>> {
+        let one = |outer: &Outer| {
+            let Outer::Planes(planes) = outer else { return None };
+            if let Some(alone) = planes.iter().position(|(n, c)| over(n, c + distance)) {
+                return Some(SmallVec::from_slice(&[(alone, 1.0)]));
+            }
+            let sum = bounding(planes, normal)?;
+            let (mut n, mut top) = (Vector3::zeros(), 0.0);
+            for (plane, weight) in &sum {
+                let (own, c) = &planes[*plane];
+                n += own * f64::from(*weight);
+                top += c * f64::from(*weight);
+            }
+            (sum.len() > 1 && over(&n, top + distance * n.norm())).then_some(sum)
+        };
+        self.outer.iter().map(one).collect()
     }
 
     /// Whether it is known to be convex.
