@@ -139,7 +139,9 @@ fn material(
     let cutters = question.cutters.iter().zip(cutters);
     let clear = Clear {
         scene,
-        cutters: cutters.map(|((path, _), bodies)| (&bodies[..], *path, cuts(*path))).collect(),
+        cutters: cutters
+            .map(|((path, _), bodies)| (&bodies[..], *path, cuts(*path)))
+            .collect(),
         idle_only: question.measure == Measure::MaterialInRapids,
         bound: claim.bound,
     };

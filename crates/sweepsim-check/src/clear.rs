@@ -22,9 +22,9 @@ use crate::motion::{Placement, Stretch};
 use crate::scene::{Motion, Scene};
 use crate::tool::Body;
 use crate::vector::{V3, add, dot, norm, norm_up, scaled, size, sub};
-use std::cmp::Ordering;
 use crate::walk::{DEEPEST, Found, Reader};
 use crate::zone::{Frame, Ring, Zone};
+use std::cmp::Ordering;
 
 /// All that is needed of a question about material.
 pub(crate) struct Clear<'a> {
@@ -57,7 +57,12 @@ impl Clear<'_> {
             let mut one = || {
                 let stretch = Stretch::new(&motions[motion])?;
                 let frame = Frame::new(&stretch)?;
-                let moving = Moving { body, frame, path, motion };
+                let moving = Moving {
+                    body,
+                    frame,
+                    path,
+                    motion,
+                };
                 if !self.goes_on(motions, motion, body) {
                     self.node(&moving, &Zone::whole(body, true), &mut reader, &mut found, 0)?;
                 }
@@ -155,7 +160,11 @@ impl Clear<'_> {
                     rings.iter().all(by)
                 };
                 if kind == 3 {
-                    let time = if cut_stretch.is_straight() { None } else { Some(reader.float()?) };
+                    let time = if cut_stretch.is_straight() {
+                        None
+                    } else {
+                        Some(reader.float()?)
+                    };
                     return Some(holds(&left(), time, need));
                 }
                 let (a, b) = (reader.float()?, reader.float()?);
@@ -174,7 +183,10 @@ impl Clear<'_> {
                     thick: *thick,
                     ..Ring::point([place[0], 0.0, place[1]])
                 };
-                let at = Placement { axis: [0.0, 0.0, 1.0], ..Placement::default() };
+                let at = Placement {
+                    axis: [0.0, 0.0, 1.0],
+                    ..Placement::default()
+                };
                 let profile: Vec<Ring> = zone.profile().iter().map(ring).collect();
                 let holds = solids.any(|solid| profile.iter().all(|ring| off(solid, &at, ring, exact) <= 0.0));
                 Some(holds && !motion.idle && !motion.possible)

@@ -133,7 +133,11 @@ fn sides(curves: &[Curve]) -> Option<(Vec<Arc>, Vec<(P2, P2)>)> {
         };
         if let Curve::Arc { centre, radius, .. } = curve {
             let (centre, radius) = (*centre, *radius);
-            arcs.push(Arc { centre, radius, normals });
+            arcs.push(Arc {
+                centre,
+                radius,
+                normals,
+            });
         }
         lines.extend([(ends[0], before), (ends[0], normals[0]), (ends[1], normals[1])]);
         arcs.push(corner(ends[0], [before, normals[0]]));
@@ -146,7 +150,11 @@ fn sides(curves: &[Curve]) -> Option<(Vec<Arc>, Vec<(P2, P2)>)> {
 
 fn corner(centre: P2, normals: [P2; 2]) -> Arc {
     let radius = 0.0;
-    Arc { centre, radius, normals }
+    Arc {
+        centre,
+        radius,
+        normals,
+    }
 }
 
 impl Body {
@@ -174,7 +182,11 @@ impl Body {
                 if to <= from {
                     // It is between its chord and the lines that touch it at its ends.
                     let (middle, half) = (0.5 * (from + to), 0.5 * (from - to));
-                    self.piece(vec![at(from, *radius), at(middle, radius / half.cos()), at(to, *radius)]);
+                    self.piece(vec![
+                        at(from, *radius),
+                        at(middle, radius / half.cos()),
+                        at(to, *radius),
+                    ]);
                     return (half < 0.8 && *radius > 0.0).then_some(());
                 }
                 let count = ((to - from) / FRAC_PI_2 - 1e-9).ceil().max(1.0);

@@ -54,7 +54,12 @@ const SHORTEST: f64 = 1e-12;
 impl Ring {
     pub fn point(centre: V3) -> Self {
         let (axis, radius, thick) = ([0.0; 3], 0.0, 0.0);
-        Self { centre, axis, radius, thick }
+        Self {
+            centre,
+            axis,
+            radius,
+            thick,
+        }
     }
 }
 
@@ -64,7 +69,11 @@ impl<'a> Frame<'a> {
         let least = (0..3).min_by(|i, j| axis[*i].abs().total_cmp(&axis[*j].abs()))?;
         let side = unit(&cross(&axis, &[0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 })))?;
         let turned = stretch.turning();
-        let spin = if turned <= MOST_TURNED { SPIN * turned } else { f64::INFINITY };
+        let spin = if turned <= MOST_TURNED {
+            SPIN * turned
+        } else {
+            f64::INFINITY
+        };
         Some(Self { stretch, side, spin })
     }
 
@@ -137,8 +146,15 @@ impl Zone {
 
     /// Its parts, as a node divides it. `None` if there is no such node.
     pub fn parts(&self, kind: u8, reader: &mut Reader) -> Option<Vec<Self>> {
-        let with = |pieces: Vec<Piece>| Self { pieces, is_whole: false, ..self.clone() };
-        let between = |angles: P2| Self { angles: Some(angles), ..self.clone() };
+        let with = |pieces: Vec<Piece>| Self {
+            pieces,
+            is_whole: false,
+            ..self.clone()
+        };
+        let between = |angles: P2| Self {
+            angles: Some(angles),
+            ..self.clone()
+        };
         Some(match (kind, self.angles) {
             (10, _) => {
                 let [from, to] = self.times;
@@ -151,13 +167,18 @@ impl Zone {
                 ([piece], false) => halves(piece)?.map(|half| with(vec![half])).to_vec(),
                 _ => return None,
             },
-            (13, None) => (0..4).map(|k| between([k, k + 1].map(|k| FRAC_PI_2 * f64::from(k)))).collect(),
+            (13, None) => (0..4)
+                .map(|k| between([k, k + 1].map(|k| FRAC_PI_2 * f64::from(k))))
+                .collect(),
             (13, Some([a, b])) => vec![between([a, 0.5 * (a + b)]), between([0.5 * (a + b), b])],
             (14, _) => {
                 let height = reader.float()?;
                 let part = |side: f64| {
                     let pieces = self.pieces.iter().filter_map(|piece| beyond(piece, height, side));
-                    Self { pieces: pieces.collect(), ..self.clone() }
+                    Self {
+                        pieces: pieces.collect(),
+                        ..self.clone()
+                    }
                 };
                 vec![part(-1.0), part(1.0)]
             }

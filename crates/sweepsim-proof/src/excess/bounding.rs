@@ -38,7 +38,10 @@ pub(super) fn bounding(planes: &[Bound], normal: &Vector3<f64>) -> Option<Weight
                 active.remove(worst);
                 continue;
             }
-            let all = active.iter().zip(&weights).map(|(plane, weight)| (*plane, *weight as f32));
+            let all = active
+                .iter()
+                .zip(&weights)
+                .map(|(plane, weight)| (*plane, *weight as f32));
             return Some(all.filter(|(_, weight)| *weight > 0.0).collect());
         }
         let far = |(number, (n, c)): (usize, &Bound)| {

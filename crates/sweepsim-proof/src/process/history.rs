@@ -207,11 +207,18 @@ fn moved(
         let best = all.into_iter().min_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or(near);
         // A record has short numbers.
         let short = best as f32;
-        if f64::from(short) > latest { short.next_down().max(0.0) } else { short }
+        if f64::from(short) > latest {
+            short.next_down().max(0.0)
+        } else {
+            short
+        }
     };
     let at = |rings: &[Ring], time: f32, need: f64| -> Held {
         let at = stretch.at(f64::from(time));
-        rings.iter().map(|ring| ring.level(level, &at, -need) <= -need).collect()
+        rings
+            .iter()
+            .map(|ring| ring.level(level, &at, -need) <= -need)
+            .collect()
     };
     match samples.ends() {
         Some([first, last]) if stretch.keeps_axis() => {

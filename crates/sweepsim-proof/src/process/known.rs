@@ -36,7 +36,9 @@ impl Answer for Found {
             to.number(*count);
         });
         to.number(self.zones);
-        to.list(self.trees.iter(), |to, tree| to.list(tree.iter(), |to, tree| to.bytes(tree)));
+        to.list(self.trees.iter(), |to, tree| {
+            to.list(tree.iter(), |to, tree| to.bytes(tree))
+        });
     }
 
     fn read(from: &mut Reading) -> Option<Self> {

@@ -48,7 +48,11 @@ impl Ring {
                 }
         };
         let own = of(&|point| level.at(point));
-        if own > most || own <= self.thick { own } else { of(&|point| level.signed(point)) }
+        if own > most || own <= self.thick {
+            own
+        } else {
+            of(&|point| level.signed(point))
+        }
     }
 
     /// How far the nearest of its points is along a direction.

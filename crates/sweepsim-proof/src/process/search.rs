@@ -236,7 +236,9 @@ impl Scene<'_> {
             touched.open_count += found.open_counts.values().sum::<usize>();
             touched.zones += found.zones;
         }
-        touched.trees = touched.trees.filter(|_| touched.moves.is_empty() && touched.open_count == 0);
+        touched.trees = touched
+            .trees
+            .filter(|_| touched.moves.is_empty() && touched.open_count == 0);
         Some(touched)
     }
 

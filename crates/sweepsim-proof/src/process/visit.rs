@@ -125,7 +125,10 @@ impl Search<'_> {
         for number in 0..1 + usize::from(starts) {
             let zone = Zone::whole(self.solid, number < usize::from(starts));
             let samples = zone.samples(&self.turned);
-            record.done(number, self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone)));
+            record.done(
+                number,
+                self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone)),
+            );
         }
         record.trees()
     }
@@ -270,8 +273,7 @@ impl Search<'_> {
         let solids = &self.scene.history.courses[self.path].solids;
         let profile = zone.profile();
         solids.iter().position(|solid| {
-            let is_inside =
-                |(place, thick): &([f64; 2], f64)| solid.level.signed(*place) + thick <= -self.scene.margin;
+            let is_inside = |(place, thick): &([f64; 2], f64)| solid.level.signed(*place) + thick <= -self.scene.margin;
             solid.convex.is_exact() && profile.iter().all(is_inside)
         })
     }

@@ -79,7 +79,11 @@ impl Zone {
             return None;
         }
         let own = f64::from(height);
-        let reaches = |side: f64| self.profile().iter().any(|(p, thick)| side * (p[1] - own) + thick > 0.0);
+        let reaches = |side: f64| {
+            self.profile()
+                .iter()
+                .any(|(p, thick)| side * (p[1] - own) + thick > 0.0)
+        };
         let part = |side: f64| Self {
             pieces: { self.pieces.iter() }
                 .filter_map(|piece| beyond(piece, own, side))
@@ -155,7 +159,9 @@ impl Zone {
                     Piece::Points(points) => points,
                     Piece::Arc { .. } => return None,
                 };
-                let ([.., b], [a, ..]) = (points, points) else { return None };
+                let ([.., b], [a, ..]) = (points, points) else {
+                    return None;
+                };
                 let way = [b[0] - a[0], b[1] - a[1]];
                 let length = way[0].hypot(way[1]).max(f64::MIN_POSITIVE);
                 ([0, 1].map(|k| 0.5 * (a[k] + b[k])), [way[1] / length, -way[0] / length])
@@ -230,7 +236,13 @@ impl Zone {
                 let middle = [0, 1].map(|k| 0.5 * (a[k] + b[k]));
                 [Piece::Line([*a, middle]), Piece::Line([middle, *b])]
             }
-            [Piece::Arc { centre, radius, angles: [from, to] }] => {
+            [
+                Piece::Arc {
+                    centre,
+                    radius,
+                    angles: [from, to],
+                },
+            ] => {
                 let middle = 0.5 * (from + to);
                 [[*from, middle], [middle, *to]].map(|angles| Piece::Arc {
                     centre: *centre,
@@ -265,7 +277,10 @@ impl Zone {
         let (height, radius) = match &self.pieces[..] {
             [Piece::Line([a, b])] => ((b[0] - a[0]).hypot(b[1] - a[1]), a[0].max(b[0])),
             [Piece::Arc { centre, radius, angles }] => (radius * (angles[1] - angles[0]), centre[0] + radius),
-            _ => (0.0, self.profile().iter().map(|(place, _)| place[0]).fold(0.0, f64::max)),
+            _ => (
+                0.0,
+                self.profile().iter().map(|(place, _)| place[0]).fold(0.0, f64::max),
+            ),
         };
         (height, radius * self.angles.map_or(TAU, |[a, b]| b - a))
     }

@@ -51,7 +51,11 @@ impl Level {
     /// How far `(ρ, ζ)` is outside of the solid, or minus how far it is inside. It is convex, and does not fall with `ρ`.
     pub fn signed(&self, point: [f64; 2]) -> f64 {
         let level = self.at(point);
-        if level > 0.0 { level.max(self.distance(point)) } else { level }
+        if level > 0.0 {
+            level.max(self.distance(point))
+        } else {
+            level
+        }
     }
 
     /// How far `(ρ, ζ)` is from the solid: 0 inside.

@@ -171,7 +171,10 @@ impl<'a> AskedAll<'a> {
             contact,
             reach: BTreeMap::new(),
         };
-        let rooms = all.beside_stock.iter().map(|movers| DEVIATION * all.distance(*movers).abs());
+        let rooms = all
+            .beside_stock
+            .iter()
+            .map(|movers| DEVIATION * all.distance(*movers).abs());
         all.deviation = rooms.fold(all.deviation, f64::min);
         if !all.deviation.is_finite() {
             all.deviation = 0.0;
@@ -314,9 +317,7 @@ impl<'a> AskedAll<'a> {
                 scene.skin = 6.0 * scene.margin;
                 let within = || job.stock.bounds().map(|[min, max]| Stock::Block { min, max });
                 let all = regions(&job.stock, scene.skin);
-                scene.stock = all
-                    .or_else(|| regions(&within()?, scene.skin))
-                    .unwrap_or_default();
+                scene.stock = all.or_else(|| regions(&within()?, scene.skin)).unwrap_or_default();
             }
             for solid in &asked.obstacles {
                 let setup = self.obstacles[*solid].setup;
@@ -347,8 +348,8 @@ impl<'a> AskedAll<'a> {
         let outlines = job.paths.iter().map(|path| outlines.get(&path.tool));
         let outlines: Vec<&[usize]> = outlines.map(|own| own.map_or(&[][..], Vec::as_slice)).collect();
         let beside_stock = self.beside_stock.iter();
-        let questions = beside_stock
-            .filter_map(|movers| material::question(job, *movers, -self.distance(*movers), &outlines));
+        let questions =
+            beside_stock.filter_map(|movers| material::question(job, *movers, -self.distance(*movers), &outlines));
         scene.questions.extend(questions);
         scene
     }
