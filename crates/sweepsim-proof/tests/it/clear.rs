@@ -4,6 +4,7 @@ use crate::certificates::checked;
 use crate::process::{ROOM, Scene as Program, block, slot};
 use sweepsim_check::{Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, packed};
 use sweepsim_dexel::Stock;
+use sweepsim_motion::{Path, Pose};
 use sweepsim_proof::{Cutter, Movers, Room, Touched, cover, material_claim, motions, outline, regions};
 
 /// What is claimed, and what it is about.
@@ -312,10 +313,19 @@ fn round_stocks_are_known_by_their_planes() {
                 > 5
         );
     }
-    // Past the upper edge of a block along y, askew: no side of it has all of the holder beyond it.
-    let tips = [[38.0, -60.0, 5.0], [33.0, -60.0, 2.0], [38.0, 60.0, 2.0]];
-    let program = Program::new(&tips, 1.0, 6.0);
-    let room = Room { distance: 0.5, ..ROOM };
-    let found = program.touched_in(&block(), Movers::Bodies, &room);
-    assert!(found.moves.is_empty() && found.open_count == 0, "{found:?}");
+    // Along an edge of a block, tilted by 45°: no side of the block has all of the holder beyond it.
+    let mut program = Program::new(&slot(4.0, 4.0), 1.0, 6.0);
+    let pose = |y: f64| Pose::new([30.3, y, 0.3], [1.0, 0.0, 1.0]).expect("a pose");
+    program.path = Path::new(vec![pose(-10.0), pose(10.0)]).expect("a path");
+    let own = proven(&program, Movers::Bodies);
+    // What is high above is beside one plane; the rest beside the sum of two, with weights.
+    assert_eq!(own.bytes.len(), 2 * 20, "{:?}", own.bytes);
+    let is_sum = |tree: &[u8]| tree[0] == 14 && tree[5..8] == [1, 2, 4] && tree[12] == 0;
+    assert!(own.bytes.chunks(20).all(is_sum));
+    // Without one of them, or its weight, it is not.
+    for number in [6, 7, 11, 12, 16] {
+        let mut changed = own.bytes.clone();
+        changed[number] = 1;
+        assert!(!own.with(&changed), "byte {number}");
+    }
 }
