@@ -93,9 +93,10 @@ fn said(statement: &CheckedStatement) -> [String; 2] {
             format!("nothing that hangs together with the target stands higher above it than {limit} mm"),
             format!("something stands higher above the target than {limit} mm"),
         ],
+        // In rapids, with the spindle stopped, or before the first feed.
         "rapid" => [
-            format!("no cutter is deeper than {limit} mm in the stock in a rapid, or with the spindle stopped"),
-            format!("a cutter is deeper than {limit} mm in the stock in a rapid, or with the spindle stopped"),
+            format!("no cutter goes deeper into the stock than {limit} mm where it must not cut"),
+            format!("a cutter goes deeper into the stock than {limit} mm where it must not cut"),
         ],
         _ if statement.limit < 0.0 => [
             format!("no shank or holder comes nearer to {into} than {limit} mm"),
