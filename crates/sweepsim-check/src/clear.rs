@@ -9,7 +9,8 @@
 //! but for the bend of the motion, and
 //!
 //! - **Beside**: beyond a plane, by the distance. Of each region that holds the stock, the plane is a sum of some that
-//!   bound it, with weights: if `⟨nᵢ, x⟩ ≤ cᵢ`, then `⟨Σ wᵢ nᵢ, x⟩ ≤ Σ wᵢ cᵢ`.
+//!   bound it, with weights: if `⟨nᵢ, x⟩ ≤ cᵢ`, then `⟨Σ wᵢ nᵢ, x⟩ ≤ Σ wᵢ cᵢ`. What may be a little deep in several
+//!   regions is out of all of them one way.
 //! - **Outside**: nothing is left of the hull when it is cut at the first planes of each region.
 //! - **Removed**: each ring is in a convex part of a cutter at one and the same time; or at some time of a straight
 //!   motion, as that sweeps a convex solid. Or, where a cutter moves without turning, all at the first time of the zone
@@ -20,17 +21,19 @@
 use crate::height::{around, off, removes, within};
 use crate::motion::{Placement, Stretch};
 use crate::scene::{Motion, Scene};
-use crate::tool::Body;
+use crate::tool::{Body, Cutting};
+use crate::tree::{Checked, Place, Proof, Reader, Step};
 use crate::vector::{V3, add, dot, norm, norm_up, scaled, size, sub};
-use crate::walk::{DEEPEST, Found, Reader};
 use crate::zone::{Frame, Ring, Zone};
 use std::cmp::Ordering;
+use std::ops::Range;
+use std::rc::Rc;
 
 /// All that is needed of a question about material.
 pub(crate) struct Clear<'a> {
     pub scene: &'a Scene,
-    /// The solids of each cutter, its path, and the motions on which it certainly cuts: numbers of the path's.
-    pub cutters: Vec<(&'a [Body], usize, Vec<usize>)>,
+    /// With the motions on which it certainly cuts.
+    pub cutters: Vec<Cutting<'a>>,
     /// Whether only motions are looked at that must not cut.
     pub idle_only: bool,
     /// What is measured is no more.
@@ -38,9 +41,9 @@ pub(crate) struct Clear<'a> {
 }
 
 /// What moves on one motion of a path.
-struct Moving<'a> {
+pub(crate) struct Moving<'a> {
     body: &'a Body,
-    frame: Frame<'a>,
+    frame: Frame,
     path: usize,
     motion: usize,
 }
@@ -48,37 +51,56 @@ struct Moving<'a> {
 /// Roundings, in parts of the largest coordinate: more than a hundred thousand.
 const ROUNDING: f64 = 1e-10;
 
-impl Clear<'_> {
-    /// Looks at a solid on some motions of a path, by their trees.
-    pub fn walked(&self, body: &Body, path: usize, [first, count]: [usize; 2], bytes: &[u8]) -> Found {
-        let (mut reader, mut found) = (Reader(bytes), Found::nothing());
-        let motions = &self.scene.paths[path];
-        for motion in (first..first + count).filter(|k| self.is_looked_at(&motions[*k])) {
-            let mut one = || {
-                let stretch = Stretch::new(&motions[motion])?;
-                let frame = Frame::new(&stretch)?;
-                let moving = Moving {
-                    body,
-                    frame,
-                    path,
-                    motion,
-                };
-                if !self.goes_on(motions, motion, body) {
-                    self.node(&moving, &Zone::whole(body, true), &mut reader, &mut found, 0)?;
-                }
-                self.node(&moving, &Zone::whole(body, false), &mut reader, &mut found, 0)
-            };
-            if one().is_none() {
-                let place = Some((path, motions[motion].number));
-                found.fail(place, [[0.0; 3]; 2], "the tree ends early, or is none");
-                return found;
-            }
-        }
-        if !reader.0.is_empty() {
-            found.fail(None, [[0.0; 3]; 2], "something comes after the tree");
-        }
+impl<'a> Proof for &Clear<'a> {
+    type Part = (Rc<Moving<'a>>, Zone);
+
+    fn node(
+        &mut self,
+        (own, zone): &Self::Part,
+        kind: u8,
+        reader: &mut Reader,
+        found: &mut Checked,
+    ) -> Step<Self::Part> {
         found.bound = self.bound;
-        found
+        if kind >= 10 {
+            let parts = zone.parts(kind, reader)?.into_iter();
+            return Some(Ok(parts.map(|part| (own.clone(), part)).collect()));
+        }
+        let holds = self.holds(own, zone, kind, reader)?;
+        Some(if holds {
+            Ok(Vec::new())
+        } else {
+            Err("it may touch material there")
+        })
+    }
+
+    fn place(&self, (own, zone): &Self::Part) -> Place {
+        let centres: Vec<V3> = zone.rings(&own.frame).0.iter().map(|ring| ring.centre).collect();
+        (Some((own.path, own.frame.stretch.number)), around(&centres))
+    }
+}
+
+impl<'a> Clear<'a> {
+    /// What has to be looked at of a solid on some motions of a path. `None` if one is none.
+    pub fn zones(&self, body: &'a Body, path: usize, some: Range<usize>) -> Option<Vec<(Rc<Moving<'a>>, Zone)>> {
+        let (motions, mut zones) = (&self.scene.paths[path], Vec::new());
+        for motion in some.filter(|k| self.is_looked_at(&motions[*k])) {
+            let frame = Frame::new(Stretch::new(&motions[motion])?)?;
+            let starts = !self.goes_on(motions, motion, body);
+            let own = Rc::new(Moving {
+                body,
+                frame,
+                path,
+                motion,
+            });
+            let filled: &[bool] = if starts { &[true, false] } else { &[false] };
+            zones.extend(
+                filled
+                    .iter()
+                    .map(|is_filled| (own.clone(), Zone::whole(body, *is_filled))),
+            );
+        }
+        Some(zones)
     }
 
     fn is_looked_at(&self, motion: &Motion) -> bool {
@@ -88,53 +110,28 @@ impl Clear<'_> {
     /// Whether a motion begins where one ends that is looked at; or one that is only possible, where that of the same
     /// move begins that is certain.
     fn goes_on(&self, motions: &[Motion], own: usize, body: &Body) -> bool {
-        let number = motions[own].number;
+        let motion = &motions[own];
         let meets = |other: usize, end: usize| {
-            let ends = Stretch::new(&motions[other]).zip(Stretch::new(&motions[own]));
-            self.is_looked_at(&motions[other])
-                && ends.is_some_and(|(other, own)| {
-                    let [p, q] = [&other.ends[end], &own.ends[0]];
-                    let apart = norm(&sub(&p.tip, &q.tip)) + norm(&sub(&p.axis, &q.axis)) * body.reach;
-                    apart <= ROUNDING * (size(&q.tip) + body.reach)
-                })
+            let [other, own] =
+                [other, own].map(|k| Stretch::new(&motions[k]).filter(|_| self.is_looked_at(&motions[k])));
+            other.zip(own).is_some_and(|(other, own)| {
+                let ([p, q], reach) = ([&other.ends[end], &own.ends[0]], body.reach);
+                let apart = norm(&sub(&p.tip, &q.tip)) + norm(&sub(&p.axis, &q.axis)) * reach;
+                apart <= ROUNDING * (size(&q.tip) + reach)
+            })
         };
-        let before = |is_it: &dyn Fn(&Motion) -> bool| motions[..own].iter().rposition(is_it);
-        if !motions[own].possible {
-            return before(&|other| !other.possible).is_some_and(|other| meets(other, 1));
+        let last = |is_it: &dyn Fn(&Motion) -> bool| motions[..own].iter().rposition(is_it);
+        if !motion.possible {
+            return last(&|other| !other.possible).is_some_and(|before| meets(before, 1));
         }
-        let first = before(&|other| !other.possible && other.number < number).map_or(0, |before| before + 1);
-        let is_own = |k: usize| !motions[k].possible && motions[k].number == number;
-        is_own(first) && meets(first, 0)
-            || own > 0 && motions[own - 1].possible && motions[own - 1].number == number && meets(own - 1, 1)
-    }
-
-    /// `None` if the tree cannot be read.
-    fn node(&self, own: &Moving, zone: &Zone, reader: &mut Reader, found: &mut Found, depth: usize) -> Option<()> {
-        found.nodes += 1;
-        let kind = reader.byte().filter(|_| depth < DEEPEST)?;
-        if kind >= 10 {
-            let parts = zone.parts(kind, reader)?;
-            return { parts.iter() }.try_for_each(|part| self.node(own, part, reader, found, depth + 1));
-        }
-        let (rings, are_points) = zone.rings(&own.frame);
-        if !self.holds(own, zone, (&rings, are_points), kind, reader)? {
-            let place = Some((own.path, self.scene.paths[own.path][own.motion].number));
-            let centres: Vec<V3> = rings.iter().map(|ring| ring.centre).collect();
-            found.fail(place, around(&centres), "it may touch material there");
-        }
-        Some(())
+        let first = last(&|other| !other.possible && other.number < motion.number).map_or(0, |before| before + 1);
+        let is_it = |k: usize, possible: bool| motions[k].number == motion.number && motions[k].possible == possible;
+        is_it(first, false) && meets(first, 0) || own > 0 && is_it(own - 1, true) && meets(own - 1, 1)
     }
 
     /// Whether a reason holds. `None` if there is no such.
-    fn holds(
-        &self,
-        own: &Moving,
-        zone: &Zone,
-        (rings, are_points): (&[Ring], bool),
-        kind: u8,
-        reader: &mut Reader,
-    ) -> Option<bool> {
-        let stretch = own.frame.stretch;
+    fn holds(&self, own: &Moving, zone: &Zone, kind: u8, reader: &mut Reader) -> Option<bool> {
+        let (stretch, (rings, are_points)) = (&own.frame.stretch, zone.rings(&own.frame));
         let far = rings.iter().map(|ring| size(&ring.centre)).fold(0.0, f64::max) + own.body.reach;
         let error = stretch.ends[0].tip_error + 4.0 * stretch.ends[0].axis_error * own.body.reach;
         let exact = -self.bound + 2.0 * self.scene.deviation + error + ROUNDING * far;
@@ -142,13 +139,19 @@ impl Clear<'_> {
         let left = || match are_points {
             true => {
                 let points: Vec<V3> = rings.iter().map(|ring| ring.centre).collect();
-                let left = within(self.scene, &points, self.scene.skin + need);
+                // Not deep in one of several regions: there, it may be in the next.
+                let deep = if self.scene.stock.len() > 1 {
+                    self.bound.max(0.0)
+                } else {
+                    0.0
+                };
+                let left = within(self.scene, &points, self.scene.skin + need + deep);
                 left.into_iter().map(Ring::point).collect()
             }
-            false => rings.to_vec(),
+            false => rings.clone(),
         };
         match kind {
-            1 => self.is_beside(rings, far, need, reader),
+            1 => self.is_beside(&rings, far, need, reader),
             2 => Some(are_points && left().is_empty()),
             3 | 4 => {
                 let (bodies, path, cuts) = self.cutters.get(reader.number()?)?;
@@ -197,7 +200,7 @@ impl Clear<'_> {
 
     /// Whether each region of the stock is beyond a plane, of which the rings are on this side by a distance.
     fn is_beside(&self, rings: &[Ring], far: f64, need: f64, reader: &mut Reader) -> Option<bool> {
-        let mut all = true;
+        let (mut all, mut way) = (true, None);
         for region in &self.scene.stock {
             let (mut n, mut top) = ([0.0; 3], 0.0);
             let count = reader.byte()?;
@@ -212,7 +215,9 @@ impl Clear<'_> {
                 let across = sub(&n, &scaled(&ring.axis, dot(&n, &ring.axis)));
                 dot(&n, &ring.centre) - ring.radius * norm_up(&across) - ring.thick * norm_up(&n)
             };
-            all &= rings.iter().all(|ring| least(ring) > top + need * norm(&n));
+            let is_over = |need: f64| rings.iter().all(|ring| least(ring) > top + need * norm(&n));
+            // From what is only beside it by being less deep in it than allowed, the same way leads out of all of them.
+            all &= is_over(need) && (is_over(need + 2.0 * self.bound.max(0.0)) || *way.get_or_insert(n) == n);
         }
         Some(all)
     }
@@ -220,14 +225,14 @@ impl Clear<'_> {
     /// Until when what a motion has cut counts, if it does: all of it, if it comes before that of a zone; and if it is
     /// the same, until the zone begins.
     fn latest(&self, own: &Moving, (path, cut): (usize, usize), begins: f64) -> Option<f64> {
-        let motions = &self.scene.paths[path];
-        let (that, this) = (&motions[cut], &self.scene.paths[own.path][own.motion]);
-        let is_before = match path.cmp(&own.path) {
-            Ordering::Less => true,
-            Ordering::Greater => return None,
-            Ordering::Equal if cut == own.motion => return Some(begins),
-            _ => that.number < this.number || that.number == this.number && !this.possible && cut < own.motion,
-        };
-        is_before.then_some(1.0)
+        let number = |path: usize, motion: usize| self.scene.paths[path][motion].number;
+        let this = &self.scene.paths[own.path][own.motion];
+        // What is only possible comes beside its move.
+        let motion = (!this.possible).then_some(own.motion);
+        match (path, number(path, cut), Some(cut)).cmp(&(own.path, this.number, motion)) {
+            Ordering::Less => Some(1.0),
+            Ordering::Equal => Some(begins),
+            Ordering::Greater => None,
+        }
     }
 }

@@ -18,9 +18,9 @@ use crate::motion::{Placement, Stretch};
 use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::surface::{Surface, nearest_of};
-use crate::tool::Body;
+use crate::tool::{Body, Cutting};
+use crate::tree::{Checked, Place, Proof, Reader, Step};
 use crate::vector::{V3, add, cross, dot, norm, norm_up, scaled, sub};
-use crate::walk::{DEEPEST, Found, Reader};
 use crate::zone::Ring;
 
 /// All that is needed of a question about a height.
@@ -28,7 +28,7 @@ pub(crate) struct Left<'a> {
     pub scene: &'a Scene,
     pub surface: &'a Surface,
     /// The solids of each mover, and the motions that it certainly makes: numbers of the path's.
-    pub movers: Vec<(&'a [Body], usize, Vec<usize>)>,
+    pub movers: Vec<Cutting<'a>>,
     pub distance: f64,
 }
 
@@ -38,48 +38,30 @@ const MOST_POINTS: usize = 48;
 /// Steps of a search for a time.
 const STEPS: usize = 40;
 
-impl Left<'_> {
-    /// Looks at some patches and their trees.
-    pub fn walked(&self, patches: &[Patch], bytes: &[u8]) -> Found {
-        let (mut reader, mut found) = (Reader(bytes), Found::nothing());
-        for patch in patches {
-            if self.node(patch, &mut reader, &mut found, 0).is_none() {
-                found.fail(None, around(&patch.corners), "the tree ends early, or is none");
-                return found;
-            }
-        }
-        if !reader.0.is_empty() {
-            found.fail(None, [[0.0; 3]; 2], "something comes after the tree");
-        }
-        found.bound = self.distance;
-        found
-    }
+impl Proof for &Left<'_> {
+    type Part = Patch;
 
-    /// `None` if the tree cannot be read.
-    fn node(&self, patch: &Patch, reader: &mut Reader, found: &mut Found, depth: usize) -> Option<()> {
-        found.nodes += 1;
-        let kind = reader.byte().filter(|_| depth < DEEPEST)?;
-        let parts = match kind {
+    fn node(&mut self, patch: &Patch, kind: u8, reader: &mut Reader, found: &mut Checked) -> Step<Patch> {
+        found.bound = self.distance;
+        Some(match kind {
             // Of corners, then of normals: 0 and 1, 0 and 2, 1 and 2.
             10..16 => {
                 let pair = [[0, 1], [0, 2], [1, 2]][usize::from(kind - 10) % 3];
                 let part = if kind < 13 { Some(reader.float()?) } else { None };
-                patch.halves(part, pair)?.to_vec()
+                Ok(patch.halves(part, pair)?.to_vec())
             }
-            16 => patch.threes(),
-            _ => {
-                let holds = self.holds(patch, kind, reader)?;
-                if !holds {
-                    found.fail(None, around(&patch.corners), "something may be left there");
-                }
-                return Some(());
-            }
-        };
-        parts
-            .iter()
-            .try_for_each(|part| self.node(part, reader, found, depth + 1))
+            16 => Ok(patch.threes()),
+            _ if self.holds(patch, kind, reader)? => Ok(Vec::new()),
+            _ => Err("something may be left there"),
+        })
     }
 
+    fn place(&self, patch: &Patch) -> Place {
+        (None, around(&patch.corners))
+    }
+}
+
+impl Left<'_> {
     /// Whether a reason holds. `None` if there is no such.
     fn holds(&self, patch: &Patch, kind: u8, reader: &mut Reader) -> Option<bool> {
         if kind == 0 {

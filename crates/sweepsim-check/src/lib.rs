@@ -17,14 +17,15 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod tool;
+mod tree;
 mod vector;
 mod walk;
 mod zone;
 
 pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, Tree, Witness, digest_of, packed};
-pub use check::{Checked, check};
+pub use check::check;
 pub use scene::{Course, Curve, Measure, Motion, Outline, Plane, Question, Scene, Triangle};
-pub use walk::Failed;
+pub use tree::{Checked, Failed};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -38,6 +38,8 @@ pub type Outline = Vec<Curve>;
 pub enum Curve {
     /// A rational Bézier curve: its control points, each with its weight; two are a line.
     Bezier(Vec<([f64; 2], f64)>),
+    /// No curve, but points: their hull, turned about the axis, has the tool in it.
+    Hull(Vec<[f64; 2]>),
     /// An arc of a circle.
     Arc {
         /// The centre.

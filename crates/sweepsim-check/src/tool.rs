@@ -46,6 +46,9 @@ pub(crate) enum Piece {
     Arc(P2, f64, P2),
 }
 
+/// The solids of something that cuts, its path, and the motions on which it does: numbers of the path's.
+pub(crate) type Cutting<'a> = (&'a [Body], usize, Vec<usize>);
+
 fn dot2(a: P2, b: P2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -100,6 +103,7 @@ fn directions(curve: &Curve) -> Option<[P2; 2]> {
             let length = way[0].hypot(way[1]);
             (length > 0.0).then_some([way.map(|c| c / length); 2])
         }
+        Curve::Hull(_) => None,
         Curve::Arc { angles, .. } => {
             let way = (angles[1] - angles[0]).signum();
             ((angles[1] - angles[0]).abs() <= PI + STRAIGHT).then_some(angles.map(|a| [-way * a.sin(), way * a.cos()]))
@@ -130,6 +134,7 @@ fn sides(curves: &[Curve]) -> Option<(Vec<Arc>, Vec<(P2, P2)>)> {
         let ends = match curve {
             Curve::Bezier(controls) => [controls[0].0, controls[1].0],
             Curve::Arc { centre, radius, .. } => normals.map(|n| [0, 1].map(|k| centre[k] + radius * n[k])),
+            Curve::Hull(_) => return None,
         };
         if let Curve::Arc { centre, radius, .. } = curve {
             let (centre, radius) = (*centre, *radius);
@@ -175,6 +180,10 @@ impl Body {
                 };
                 self.piece(own.iter().map(|(point, _)| *point).collect());
                 (!own.is_empty() && controls.iter().all(|(_, weight)| *weight > 1e-6)).then_some(())
+            }
+            Curve::Hull(points) => {
+                self.piece(points.clone());
+                (parts == 1).then_some(())
             }
             Curve::Arc { centre, radius, angles } => {
                 let at = |angle: f64, r: f64| [centre[0] + r * angle.cos(), centre[1] + r * angle.sin()];

@@ -11,8 +11,8 @@
 
 use crate::motion::{Placement, Stretch};
 use crate::tool::{Body, P2, Piece};
+use crate::tree::Reader;
 use crate::vector::{V3, add, cross, dot, scaled, sub, unit};
-use crate::walk::Reader;
 use std::f64::consts::FRAC_PI_2;
 
 /// A circle about an axis, with a ball around each of its points.
@@ -25,8 +25,8 @@ pub(crate) struct Ring {
 }
 
 /// What angles are measured from, on a motion.
-pub(crate) struct Frame<'a> {
-    pub stretch: &'a Stretch,
+pub(crate) struct Frame {
+    pub stretch: Stretch,
     side: V3,
     /// The angle of a point changes by no more in a time of 1.
     spin: f64,
@@ -63,8 +63,8 @@ impl Ring {
     }
 }
 
-impl<'a> Frame<'a> {
-    pub fn new(stretch: &'a Stretch) -> Option<Self> {
+impl Frame {
+    pub fn new(stretch: Stretch) -> Option<Self> {
         let axis = stretch.at(0.5).axis;
         let least = (0..3).min_by(|i, j| axis[*i].abs().total_cmp(&axis[*j].abs()))?;
         let side = unit(&cross(&axis, &[0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 })))?;

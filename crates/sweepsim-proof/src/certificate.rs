@@ -36,10 +36,10 @@ pub fn outline(tool: &Tool) -> Outline {
     for patch in tool.patches() {
         for (i, weight) in patch.weight().coefficients().iter().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
-            points.push(([x.hypot(y), z], 1.0));
+            points.push([x.hypot(y), z]);
         }
     }
-    vec![Curve::Bezier(points)]
+    vec![Curve::Hull(points)]
 }
 
 /// The motions of a path, in the order in which proofs look at them. `is_idle`: whether a move must not cut.

@@ -179,27 +179,46 @@ impl Before {
     /// For each region that holds the stock, some of its planes, each with a weight: the sum has the region below it,
     /// and something above, by a distance. `over`: whether that is so, for a direction and a height along it; `normal`:
     /// the direction that is tried if no plane will do alone. `None` of a mesh, or if it is not so.
+    ///
+    /// If the distance is negative, something may be `allowed` so deep in the stock: that is so of several regions only
+    /// if one direction leads out of all of them that are not farther than that.
     pub fn planes_below(
         &self,
         over: &dyn Fn(&Vector3<f64>, f64) -> bool,
         normal: &Vector3<f64>,
-        distance: f64,
+        (distance, allowed): (f64, f64),
     ) -> Option<Vec<Weights>> {
-        let one = |outer: &Outer| {
+        let mut way: Option<Vector3<f64>> = None;
+        let mut one = |outer: &Outer| {
             let Outer::Planes(planes) = outer else { return None };
-            if let Some(alone) = planes.iter().position(|(n, c)| over(n, c + distance)) {
-                return Some(SmallVec::from_slice(&[(alone, 1.0)]));
+            let by = |more: f64| move |(_, (n, c)): &(usize, &Bound)| over(n, c + distance + more);
+            let along = |(_, (n, _)): &(usize, &Bound)| n.dot(normal);
+            let all = || planes.iter().enumerate();
+            if let Some((alone, _)) = all().find(by(2.0 * allowed)) {
+                return Some(Weights::from_slice(&[(alone, 1.0)]));
             }
-            let sum = bounding(planes, normal)?;
-            let (mut n, mut top) = (Vector3::zeros(), 0.0);
-            for (plane, weight) in &sum {
-                let (own, c) = &planes[*plane];
-                n += own * f64::from(*weight);
-                top += c * f64::from(*weight);
-            }
-            (sum.len() > 1 && over(&n, top + distance * n.norm())).then_some(sum)
+            let alone = { all().filter(by(0.0)) }.max_by(|a, b| along(a).total_cmp(&along(b)));
+            let (n, sum) = match alone {
+                Some((number, (n, _))) => (*n, Weights::from_slice(&[(number, 1.0)])),
+                None => {
+                    let sum = bounding(planes, normal)?;
+                    let of = |(plane, weight): &(usize, f32)| (planes[*plane], f64::from(*weight));
+                    let n: Vector3<f64> = sum.iter().map(of).map(|((n, _), weight)| n * weight).sum();
+                    let top: f64 = sum.iter().map(of).map(|((_, c), weight)| c * weight).sum();
+                    if sum.len() < 2 || !over(&n, top + distance * n.norm()) {
+                        return None;
+                    }
+                    (n, sum)
+                }
+            };
+            (*way.get_or_insert(n) == n).then_some(sum)
         };
-        self.outer.iter().map(one).collect()
+        self.outer.iter().map(&mut one).collect()
+    }
+
+    /// Whether it is within several regions between planes.
+    pub fn is_several(&self) -> bool {
+        self.outer.len() > 1 && self.outer.iter().all(|outer| matches!(outer, Outer::Planes(_)))
     }
 
     /// Whether it is known to be convex.

@@ -166,7 +166,9 @@ impl Search<'_> {
     fn beside(&self, samples: &Samples, normal: &Vector3<f64>, need: f64) -> Option<Bytes> {
         let over = |n: &Vector3<f64>, top: f64| samples.rings.iter().all(|ring| ring.least(n) > top);
         let mut bytes = Bytes::from_slice(&[1]);
-        for planes in self.scene.history.before.planes_below(&over, normal, need)? {
+        let allowed = (-self.scene.room.distance).max(0.0);
+        let before = &self.scene.history.before;
+        for planes in before.planes_below(&over, normal, (need, allowed))? {
             bytes.push(u8::try_from(planes.len()).ok()?);
             for (plane, weight) in &planes {
                 number(&mut bytes, *plane);
@@ -235,7 +237,11 @@ impl Search<'_> {
         let centre = samples.middle();
         let normal = self.away(&samples, normal);
         if scene.history.before.is_beside(&corners, &normal, need) {
-            return Visit::Free(self.beside(&samples, &normal, need));
+            let why = self.beside(&samples, &normal, need);
+            // Beside each of several regions, but between them, is not beside all.
+            if why.is_some() || !scene.history.before.is_several() {
+                return Visit::Free(why);
+            }
         }
         let mut is_whole = true;
         if samples.are_points() {

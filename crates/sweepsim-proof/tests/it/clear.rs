@@ -329,3 +329,34 @@ fn round_stocks_are_known_by_their_planes() {
         assert!(!own.with(&changed), "byte {number}");
     }
 }
+
+/// Where two regions meet there is no gap, though what is there is deep in neither.
+#[test]
+fn between_two_regions_is_material() {
+    let region = |[low, high]: [f64; 2]| Stock::Block {
+        min: [-30.0, -20.0, low],
+        max: [30.0, 20.0, high],
+    };
+    let stock = Stock::Union(vec![region([-20.0, -4.0]), region([-4.0, 0.0])]);
+    // A thin disc, in both by less than is allowed.
+    let mut program = Program::new(&[[-8.0, 0.0, -4.000_25], [8.0, 0.0, -4.000_25]], 5e-4, 1.0);
+    program.rapids = vec![0];
+    let leaf = [1, 1, 4, 1, 5].repeat(2);
+    let mut own = by_hand(&program, Movers::Rapids, &leaf);
+    own.scene.stock = regions(&stock, 0.0).expect("no mesh");
+    assert!(!own.checked().is_proven());
+    let found = program.touched_in(&stock, Movers::Rapids, &Room { zones: 2000, ..ROOM });
+    assert!(found.trees.is_none());
+    // On top of both, side by side, or of one of them, it is.
+    own.scene.stock.truncate(1);
+    assert!(own.with(&[1, 1, 4].repeat(2)));
+    let turned = |region: &[([f64; 3], f64)]| -> Vec<_> {
+        let beside = region
+            .iter()
+            .map(|(n, c)| if n[0] < 0.0 { (*n, 0.0) } else { (*n, *c) });
+        beside.collect()
+    };
+    own.scene.stock.push(turned(&own.scene.stock[0]));
+    assert!(own.with(&[1, 1, 4, 1, 4].repeat(2)));
+    assert!(!own.with(&[1, 1, 4, 1, 1].repeat(2)));
+}
