@@ -19,7 +19,7 @@
 //! - **Cut**: in the cutter that moves along, and cuts, at the same time.
 
 use crate::height::{around, off, removes, within};
-use crate::motion::{Placement, Stretch};
+use crate::motion::Stretch;
 use crate::scene::{Motion, Scene};
 use crate::tool::{Body, Cutting};
 use crate::tree::{Checked, Place, Proof, Reader, Step};
@@ -67,11 +67,7 @@ impl<'a> Proof for &Clear<'a> {
             return Some(Ok(parts.map(|part| (own.clone(), part)).collect()));
         }
         let holds = self.holds(own, zone, kind, reader)?;
-        Some(if holds {
-            Ok(Vec::new())
-        } else {
-            Err("it may touch material there")
-        })
+        Some(holds.then(Vec::new).ok_or("it may touch material there"))
     }
 
     fn place(&self, (own, zone): &Self::Part) -> Place {
@@ -86,19 +82,18 @@ impl<'a> Clear<'a> {
         let (motions, mut zones) = (&self.scene.paths[path], Vec::new());
         for motion in some.filter(|k| self.is_looked_at(&motions[*k])) {
             let frame = Frame::new(Stretch::new(&motions[motion])?)?;
-            let starts = !self.goes_on(motions, motion, body);
             let own = Rc::new(Moving {
                 body,
                 frame,
                 path,
                 motion,
             });
-            let filled: &[bool] = if starts { &[true, false] } else { &[false] };
-            zones.extend(
-                filled
-                    .iter()
-                    .map(|is_filled| (own.clone(), Zone::whole(body, *is_filled))),
-            );
+            for is_filled in [true, false]
+                .into_iter()
+                .skip(usize::from(self.goes_on(motions, motion, body)))
+            {
+                zones.push((own.clone(), Zone::whole(body, is_filled)));
+            }
         }
         Some(zones)
     }
@@ -136,6 +131,7 @@ impl<'a> Clear<'a> {
         let error = stretch.ends[0].tip_error + 4.0 * stretch.ends[0].axis_error * own.body.reach;
         let exact = -self.bound + 2.0 * self.scene.deviation + error + ROUNDING * far;
         let need = exact + stretch.bend(own.body.reach, zone.times[1] - zone.times[0]);
+        let (first, last) = rings.split_at(rings.len() / if zone.times[1] > zone.times[0] { 2 } else { 1 });
         let left = || match are_points {
             true => {
                 let points: Vec<V3> = rings.iter().map(|ring| ring.centre).collect();
@@ -163,36 +159,22 @@ impl<'a> Clear<'a> {
                     rings.iter().all(by)
                 };
                 if kind == 3 {
-                    let time = if cut_stretch.is_straight() {
-                        None
-                    } else {
-                        Some(reader.float()?)
-                    };
+                    let time = reader.float_if(!cut_stretch.is_straight())?;
                     return Some(holds(&left(), time, need));
                 }
                 let (a, b) = (reader.float()?, reader.float()?);
-                let (first, last) = rings.split_at(rings.len() / 2);
                 let need = need + cut_stretch.bend(0.0, (b - a).abs());
                 let is_moved = cut_stretch.keeps_axis() && zone.times[1] > zone.times[0];
                 Some(is_moved && holds(first, Some(a), need) && holds(last, Some(b), need))
             }
             5 => {
-                let solid = reader.number()?;
+                let (solid, at) = (reader.number()?, stretch.at(zone.times[0]));
                 let motion = &self.scene.paths[own.path][own.motion];
                 let cutters = self.cutters.iter().filter(|(_, path, _)| *path == own.path);
-                let mut solids = cutters.filter_map(|(bodies, ..)| bodies.get(solid));
-                // Both move together, so that only their outlines matter.
-                let ring = |(place, thick): &([f64; 2], f64)| Ring {
-                    thick: *thick,
-                    ..Ring::point([place[0], 0.0, place[1]])
-                };
-                let at = Placement {
-                    axis: [0.0, 0.0, 1.0],
-                    ..Placement::default()
-                };
-                let profile: Vec<Ring> = zone.profile().iter().map(ring).collect();
-                let holds = solids.any(|solid| profile.iter().all(|ring| off(solid, &at, ring, exact) <= 0.0));
-                Some(holds && !motion.idle && !motion.possible)
+                // Both move together, so that one time is enough.
+                let holds = |solid: &Body| first.iter().all(|ring| off(solid, &at, ring, exact) <= 0.0);
+                let is_cut = { cutters }.filter_map(|(bodies, ..)| bodies.get(solid)).any(holds);
+                Some(is_cut && !motion.idle && !motion.possible)
             }
             _ => None,
         }

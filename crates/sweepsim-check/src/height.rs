@@ -47,7 +47,7 @@ impl Proof for &Left<'_> {
             // Of corners, then of normals: 0 and 1, 0 and 2, 1 and 2.
             10..16 => {
                 let pair = [[0, 1], [0, 2], [1, 2]][usize::from(kind - 10) % 3];
-                let part = if kind < 13 { Some(reader.float()?) } else { None };
+                let part = reader.float_if(kind < 13)?;
                 Ok(patch.halves(part, pair)?.to_vec())
             }
             16 => Ok(patch.threes()),
@@ -82,11 +82,7 @@ impl Left<'_> {
                 let (bodies, path, certain) = self.movers.get(mover)?;
                 let (body, motion) = (bodies.get(solid)?, *certain.get(motion)?);
                 let stretch = Stretch::new(&self.scene.paths[*path][motion])?;
-                let time = if stretch.is_straight() {
-                    None
-                } else {
-                    Some(reader.float()?)
-                };
+                let time = reader.float_if(!stretch.is_straight())?;
                 { within.iter() }.all(|p| removes(body, &stretch, (time, 1.0), &Ring::point(*p), self.scene.margin))
             }
             _ => return None,

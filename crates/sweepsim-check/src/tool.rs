@@ -28,14 +28,9 @@ pub(crate) struct Body {
     sides: Option<(Vec<Arc>, Vec<(P2, P2)>)>,
 }
 
-/// An arc of at most 90°.
+/// An arc, or a corner with a radius of 0: its centre, its radius, and the unit normals at its ends, counter-clockwise.
 #[derive(Clone, Debug)]
-struct Arc {
-    centre: P2,
-    radius: f64,
-    /// The unit normals at its ends, counter-clockwise.
-    normals: [P2; 2],
-}
+struct Arc(P2, f64, [P2; 2]);
 
 /// A part of an outline.
 #[derive(Clone, Debug)]
@@ -137,29 +132,15 @@ fn sides(curves: &[Curve]) -> Option<(Vec<Arc>, Vec<(P2, P2)>)> {
             Curve::Hull(_) => return None,
         };
         if let Curve::Arc { centre, radius, .. } = curve {
-            let (centre, radius) = (*centre, *radius);
-            arcs.push(Arc {
-                centre,
-                radius,
-                normals,
-            });
+            arcs.push(Arc(*centre, *radius, normals));
         }
         lines.extend([(ends[0], before), (ends[0], normals[0]), (ends[1], normals[1])]);
-        arcs.push(corner(ends[0], [before, normals[0]]));
+        arcs.push(Arc(ends[0], 0.0, [before, normals[0]]));
         (before, last) = (normals[1], ends[1]);
     }
-    arcs.push(corner(last, [before, [0.0, 1.0]]));
+    arcs.push(Arc(last, 0.0, [before, [0.0, 1.0]]));
     lines.push((last, [0.0, 1.0]));
     Some((arcs, lines))
-}
-
-fn corner(centre: P2, normals: [P2; 2]) -> Arc {
-    let radius = 0.0;
-    Arc {
-        centre,
-        radius,
-        normals,
-    }
 }
 
 impl Body {
@@ -205,11 +186,7 @@ impl Body {
                     let normals = angles.map(|angle| [angle.cos(), angle.sin()]);
                     self.corners
                         .extend(normals.map(|n| [0, 1].map(|i| centre[i] + radius * n[i])));
-                    self.arcs.push(Arc {
-                        centre: *centre,
-                        radius: *radius,
-                        normals,
-                    });
+                    self.arcs.push(Arc(*centre, *radius, normals));
                 }
                 (count < 5.0 && *radius > 0.0).then_some(())
             }
@@ -227,7 +204,7 @@ impl Body {
         let arcs = self
             .arcs
             .iter()
-            .map(|arc| arc.centre[0].hypot(arc.centre[1]) + arc.radius);
+            .map(|Arc(centre, radius, _)| centre[0].hypot(centre[1]) + radius);
         self.reach = corners.chain(arcs).fold(0.0, f64::max) * MORE;
         self.heights = [-self.meridian([0.0, -1.0], 1.0), self.meridian([0.0, 1.0], 1.0)];
         self.corners.extend(self.heights.map(|height| [0.0, height]));
@@ -250,12 +227,12 @@ impl Body {
     fn meridian(&self, d: P2, length: f64) -> f64 {
         let corners = self.corners.iter().map(|corner| dot2(d, *corner));
         let mut best = corners.fold(f64::NEG_INFINITY, f64::max);
-        for arc in &self.arcs {
-            let [from, to] = arc.normals;
+        for Arc(centre, radius, [from, to]) in &self.arcs {
+            let [from, to] = [*from, *to];
             let near = -1e-12 * length;
             // The whole circle reaches at least as far: the test need not be exact, if it is wide enough.
             if cross2(from, d) >= near && cross2(d, to) >= near && dot2(d, from) + dot2(d, to) > 0.0 {
-                best = best.max(dot2(d, arc.centre) + arc.radius * length);
+                best = best.max(dot2(d, *centre) + radius * length);
             }
         }
         best
@@ -269,11 +246,11 @@ impl Body {
         let (arcs, lines) = self.sides.as_ref()?;
         let from = |q: P2| [p[0] - q[0], p[1] - q[1]];
         let beyond = lines.iter().map(|(q, n)| dot2(*n, from(*q)));
-        let around = arcs.iter().filter_map(|arc| {
-            let (off, [first, last]) = (from(arc.centre), arc.normals);
+        let around = arcs.iter().filter_map(|Arc(centre, radius, [first, last])| {
+            let (off, [first, last]) = (from(*centre), [*first, *last]);
             let is_ahead = dot2(first, off) >= 0.0 || dot2(last, off) >= 0.0;
             let is_between = cross2(first, off) >= 0.0 && cross2(off, last) >= 0.0;
-            (is_ahead && is_between).then(|| off[0].hypot(off[1]) - arc.radius)
+            (is_ahead && is_between).then(|| off[0].hypot(off[1]) - radius)
         });
         Some(beyond.chain(around).fold(f64::NEG_INFINITY, f64::max))
     }

@@ -97,6 +97,11 @@ impl<'a> Reader<'a> {
         Some(own)
     }
 
+    /// Nothing if it is not `there`.
+    pub fn float_if(&mut self, there: bool) -> Option<Option<f64>> {
+        if there { self.float().map(Some) } else { Some(None) }
+    }
+
     pub fn float(&mut self) -> Option<f64> {
         let bytes = self.bytes(4)?;
         Some(f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])))

@@ -84,11 +84,7 @@ impl<'a> Proof for Walk<'a> {
                 };
                 let bound = bound + self.more;
                 found.bound = found.bound.max(bound);
-                Some(if bound <= self.most {
-                    Ok(Vec::new())
-                } else {
-                    Err("may be deeper, or nearer")
-                })
+                Some((bound <= self.most).then(Vec::new).ok_or("may be deeper, or nearer"))
             }
         }
     }

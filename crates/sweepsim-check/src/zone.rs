@@ -16,7 +16,7 @@ use crate::vector::{V3, add, cross, dot, scaled, sub, unit};
 use std::f64::consts::FRAC_PI_2;
 
 /// A circle about an axis, with a ball around each of its points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ring {
     pub centre: V3,
     pub axis: V3,
@@ -53,13 +53,8 @@ const SHORTEST: f64 = 1e-12;
 
 impl Ring {
     pub fn point(centre: V3) -> Self {
-        let (axis, radius, thick) = ([0.0; 3], 0.0, 0.0);
-        Self {
-            centre,
-            axis,
-            radius,
-            thick,
-        }
+        let none = Self::default();
+        Self { centre, ..none }
     }
 }
 
@@ -69,11 +64,7 @@ impl Frame {
         let least = (0..3).min_by(|i, j| axis[*i].abs().total_cmp(&axis[*j].abs()))?;
         let side = unit(&cross(&axis, &[0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 })))?;
         let turned = stretch.turning();
-        let spin = if turned <= MOST_TURNED {
-            SPIN * turned
-        } else {
-            f64::INFINITY
-        };
+        let spin = SPIN * if turned <= MOST_TURNED { turned } else { f64::INFINITY };
         Some(Self { stretch, side, spin })
     }
 
@@ -146,44 +137,37 @@ impl Zone {
 
     /// Its parts, as a node divides it. `None` if there is no such node.
     pub fn parts(&self, kind: u8, reader: &mut Reader) -> Option<Vec<Self>> {
-        let with = |pieces: Vec<Piece>| Self {
-            pieces,
-            is_whole: false,
-            ..self.clone()
-        };
-        let between = |angles: P2| Self {
-            angles: Some(angles),
-            ..self.clone()
-        };
-        Some(match (kind, self.angles) {
-            (10, _) => {
+        let with = |pieces| self.with(|zone| (zone.pieces, zone.is_whole) = (pieces, false));
+        let between = |angles| self.with(|zone| zone.angles = Some(angles));
+        let during = |times| self.with(|zone| zone.times = times);
+        Some(match (kind, self.angles, &self.pieces[..]) {
+            (10, ..) => {
                 let [from, to] = self.times;
                 let middle = 0.5 * (from + to);
-                let during = |times| Self { times, ..self.clone() };
-                (to - from > SHORTEST).then(|| vec![during([from, middle]), during([middle, to])])?
+                (to - from > SHORTEST).then(|| [[from, middle], [middle, to]].map(during).to_vec())?
             }
-            (11, _) if self.is_whole => self.pieces.iter().map(|piece| with(vec![piece.clone()])).collect(),
-            (12, _) => match (&self.pieces[..], self.is_whole) {
-                ([piece], false) => halves(piece)?.map(|half| with(vec![half])).to_vec(),
-                _ => return None,
-            },
-            (13, None) => (0..4)
-                .map(|k| between([k, k + 1].map(|k| FRAC_PI_2 * f64::from(k))))
-                .collect(),
-            (13, Some([a, b])) => vec![between([a, 0.5 * (a + b)]), between([0.5 * (a + b), b])],
-            (14, _) => {
+            (11, ..) if self.is_whole => self.pieces.iter().map(|piece| with(vec![piece.clone()])).collect(),
+            (12, _, [piece]) if !self.is_whole => halves(piece)?.map(|half| with(vec![half])).to_vec(),
+            (13, None, _) => [0.0, 1.0, 2.0, 3.0]
+                .map(|k| between([k, k + 1.0].map(|k| FRAC_PI_2 * k)))
+                .to_vec(),
+            (13, Some([a, b]), _) => vec![between([a, 0.5 * (a + b)]), between([0.5 * (a + b), b])],
+            (14, ..) => {
                 let height = reader.float()?;
-                let part = |side: f64| {
+                let part = |side| {
                     let pieces = self.pieces.iter().filter_map(|piece| beyond(piece, height, side));
-                    Self {
-                        pieces: pieces.collect(),
-                        ..self.clone()
-                    }
+                    self.with(|zone| zone.pieces = pieces.collect())
                 };
                 vec![part(-1.0), part(1.0)]
             }
             _ => return None,
         })
+    }
+
+    fn with(&self, change: impl FnOnce(&mut Self)) -> Self {
+        let mut zone = self.clone();
+        change(&mut zone);
+        zone
     }
 }
 
@@ -208,25 +192,17 @@ fn halves(piece: &Piece) -> Option<[Piece; 2]> {
 
 /// What of a piece is above a height, or below it for a `side` of −1; of what is no line, all if some of it may be.
 fn beyond(piece: &Piece, height: f64, side: f64) -> Option<Piece> {
-    let over = |zeta: f64| side * (zeta - height);
+    let is_over = |p: &P2, by: f64| side * (p[1] - height) + by >= 0.0;
     match piece {
-        Piece::Points(points) => {
-            let [a, b] = match points[..] {
-                [a, b] => [a, b],
-                _ => return points.iter().any(|p| over(p[1]) >= 0.0).then(|| piece.clone()),
-            };
-            let cut = || {
-                let share = (height - a[1]) / (b[1] - a[1]);
-                [a[0] + (b[0] - a[0]) * share, height]
-            };
-            let ends = match [a, b].map(|p| over(p[1]) >= 0.0) {
-                [true, true] => [a, b],
-                [true, false] => [a, cut()],
-                [false, true] => [cut(), b],
-                [false, false] => return None,
-            };
-            Some(Piece::Points(ends.to_vec()))
+        Piece::Points(points) if !points.iter().any(|p| is_over(p, 0.0)) => None,
+        Piece::Arc(centre, radius, _) if !is_over(centre, *radius) => None,
+        Piece::Points(points) if points.len() == 2 => {
+            let [a, b] = [points[0], points[1]];
+            let cut = [a[0] + (b[0] - a[0]) * (height - a[1]) / (b[1] - a[1]), height];
+            Some(Piece::Points(
+                [a, b].map(|p| if is_over(&p, 0.0) { p } else { cut }).to_vec(),
+            ))
         }
-        Piece::Arc(centre, radius, _) => (over(centre[1]) + radius >= 0.0).then(|| piece.clone()),
+        _ => Some(piece.clone()),
     }
 }

@@ -226,7 +226,7 @@ impl Search<'_> {
         let bend = self.turned.stretch.bend(self.solid.reach(), to - from);
         let need = scene.margin + bend;
         let mut samples = zone.samples(&self.turned);
-        if let Some(solid) = self.is_in_cutter(zone).filter(|_| !self.is_rapid) {
+        if let Some(solid) = self.is_in_cutter(zone) {
             let mut bytes = Bytes::from_slice(&[5]);
             number(&mut bytes, solid);
             return Visit::Free(Some(bytes));
@@ -274,8 +274,12 @@ impl Search<'_> {
         Visit::Divided(how, smaller, inside.min(nearest) + samples.extent(&centre))
     }
 
-    /// In which solid of the cutter that it belongs to a zone is, which cuts at that time.
+    /// In which solid of the cutter that it belongs to a zone is, which cuts at that time. That is so all around or not
+    /// at all.
     fn is_in_cutter(&self, zone: &Zone) -> Option<usize> {
+        if self.is_rapid || zone.angles.is_some() {
+            return None;
+        }
         let solids = &self.scene.history.courses[self.path].solids;
         let profile = zone.profile();
         solids.iter().position(|solid| {
