@@ -1,17 +1,15 @@
 //! The whole check: what must fit together before trees are walked, and the witness.
 
-use crate::cell::Cell;
 use crate::certificate::{Claim, Tree, unpacked};
 use crate::clear::Clear;
-use crate::height::{Left, off};
+use crate::depth::{Cell, depths};
+use crate::height::{Left, off, patches};
 use crate::motion::{Run, Stretch};
-use crate::patch::patches;
 use crate::scene::{Course, Measure, Motion, Question, Scene};
 use crate::surface::Surface;
 use crate::tool::{Body, Cutting, bodies};
 use crate::tree::{Checked, walked};
 use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
-use crate::walk::depths;
 use crate::zone::Ring;
 use std::collections::BTreeMap;
 use std::sync::Mutex;

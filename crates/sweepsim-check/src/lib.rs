@@ -4,14 +4,12 @@
 //! tools and paths as plain numbers, and what is asked. It shares no code with the prover, and rounds all bounds
 //! outwards. The crate's README has the statements, the format, and where each step is proven.
 
-mod cell;
 mod certificate;
 mod check;
 mod clear;
+mod depth;
 mod height;
-mod leaf;
 mod motion;
-mod patch;
 mod scene;
 mod surface;
 #[cfg(test)]
@@ -19,7 +17,6 @@ mod tests;
 mod tool;
 mod tree;
 mod vector;
-mod walk;
 mod zone;
 
 pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, Tree, Witness, digest_of, packed};

@@ -24,13 +24,16 @@ pub(crate) struct Body {
     pub heights: [f64; 2],
     /// Its part of the outline, from the tip to the top.
     pub pieces: Vec<Piece>,
-    /// What it is between, if it is part of the tool: arcs, corners with a radius of 0, and lines.
-    sides: Option<(Vec<Arc>, Vec<(P2, P2)>)>,
+    /// What it is between, if it is part of the tool.
+    sides: Option<Sides>,
 }
 
 /// An arc, or a corner with a radius of 0: its centre, its radius, and the unit normals at its ends, counter-clockwise.
 #[derive(Clone, Debug)]
 struct Arc(P2, f64, [P2; 2]);
+
+/// Arcs and corners, and lines: points on them, and their normals.
+type Sides = (Vec<Arc>, Vec<(P2, P2)>);
 
 /// A part of an outline.
 #[derive(Clone, Debug)]
@@ -118,9 +121,9 @@ fn turns_left(curves: &[Curve]) -> bool {
         && curves.iter().all(rising)
 }
 
-/// What is beside some curves is between their arcs, with the normals at both ends, and lines: points on them, and
-/// their normals. Where they meet, it ends at a corner, and it lies between their lowest and highest points.
-fn sides(curves: &[Curve]) -> Option<(Vec<Arc>, Vec<(P2, P2)>)> {
+/// What is beside some curves is between their arcs and the lines at their ends. Where they meet, it ends at a corner,
+/// and it lies between their lowest and highest points.
+fn sides(curves: &[Curve]) -> Option<Sides> {
     let (mut arcs, mut before) = (Vec::new(), [0.0, -1.0]);
     let mut lines: Vec<(P2, P2)> = Vec::new();
     let mut last = [0.0; 2];

@@ -1,7 +1,7 @@
 //! Follows the trees of a certificate, whatever they are about.
 //!
-//! A node is a byte, and what belongs to it. It divides what it is about into parts, of which the nodes follow; or it is
-//! a leaf, and says why a statement holds there. So the leaves are about all of it together.
+//! A node is a byte, and what belongs to it. It divides what it is about into parts, of which the nodes follow; or it
+//! is a leaf, and says why a statement holds there. So the leaves are about all of it together.
 
 use crate::vector::V3;
 

@@ -6,8 +6,8 @@
 //! tangents meet. Between the times, it is in the hull of those at both, but for the [bend](Stretch::bend).
 //!
 //! Angles are measured from a fixed vector `f`, less its part along the axis `a`. At the middle of the motion that is
-//! nothing, so it is at most `s = sin(w/2)` if the axis turns by `w` in all; and the direction turns about the axis, seen
-//! from the [tool](crate::motion), at the rate `|a′| s/√(1 − s²)`.
+//! nothing, so it is at most `s = sin(w/2)` if the axis turns by `w` in all; and the direction turns about the axis,
+//! seen from the [tool](crate::motion), at the rate `|a′| s/√(1 − s²)`.
 
 use crate::motion::{Placement, Stretch};
 use crate::tool::{Body, P2, Piece};

@@ -14,7 +14,7 @@ const SKY: usize = 64;
 const FEWEST: usize = 32;
 /// About how many triangles are drawn for them in total.
 const WORK: usize = 30_000_000;
-/// Texels across their maps.
+/// Texels across their maps, in pictures that are not [small](fine).
 const SKY_MAP: usize = 400;
 /// Depth maps of the lamp, and texels across.
 const LAMP: usize = 16;
@@ -23,6 +23,8 @@ const LAMP_MAP: usize = 1024;
 const LAMP_SIZE: f32 = 0.16;
 /// Points across the net on the ground, and its reach.
 const NET: usize = 320;
+/// Pictures with fewer pixels along their longer side have coarser maps and nets, down to a quarter.
+const SMALL: usize = 640;
 pub(crate) const NET_REACH: f32 = 2.4;
 /// The golden angle.
 const GOLDEN: f32 = 2.399_963_2;
@@ -44,6 +46,10 @@ pub(crate) struct Lights {
     pub around: Vec<Around>,
     /// Sky and lamp at the points of the net on the ground.
     net: Vec<[f32; 2]>,
+    /// Points across the net.
+    across: usize,
+    /// How often it is blurred: over about the same distance in any picture.
+    blurs: usize,
 }
 
 impl Lights {
@@ -55,8 +61,8 @@ impl Lights {
         LAMP + sky_maps(scene) + 2
     }
 
-    /// Returns `None` if the steps end before all are known.
-    pub fn new(scene: &Scene, camera: &Camera, steps: &Steps<'_>) -> Option<Self> {
+    /// The lights for a picture of this size. Returns `None` if the steps end before all are known.
+    pub fn new(scene: &Scene, camera: &Camera, size: [usize; 2], steps: &Steps<'_>) -> Option<Self> {
         // Above the viewer's left shoulder.
         let lamp = unit(add(
             add(scale(camera.right, -0.75), scale(camera.forward, -0.12)),
@@ -67,13 +73,20 @@ impl Lights {
             shadows: None,
             around: Vec::new(),
             net: Vec::new(),
+            across: fine(NET, size),
+            blurs: fine(3, size),
         };
         if scene.triangles.is_empty() {
             return Some(lights);
         }
-        lights.shadows = Some(DepthMaps::new(scene, &over_the_lamp(lamp), LAMP_MAP, steps)?);
+        lights.shadows = Some(DepthMaps::new(
+            scene,
+            &over_the_lamp(lamp),
+            fine(LAMP_MAP, size),
+            steps,
+        )?);
         let count = sky_maps(scene);
-        let sky = DepthMaps::new(scene, &over_the_sphere(count), SKY_MAP, steps)?;
+        let sky = DepthMaps::new(scene, &over_the_sphere(count), fine(SKY_MAP, size), steps)?;
         lights.around = steps.step(|| around_vertices(scene, &sky, count))?;
         lights.net = steps.step(|| lights.on_the_ground(scene, &sky, count))?;
         Some(lights)
@@ -83,12 +96,14 @@ impl Lights {
     fn on_the_ground(&self, scene: &Scene, sky: &DepthMaps, count: usize) -> Vec<[f32; 2]> {
         let above = |direction: Vector| direction[2];
         let all: f32 = over_the_sphere(count).into_iter().map(|d| above(d).max(0.0)).sum();
-        let net = (0..NET * NET).into_par_iter().map(|index| {
-            let p = [net_place(index % NET), net_place(index / NET), scene.ground];
+        let across = self.across;
+        let place = |k: usize| (2.0 * k as f32 / (across as f32 - 1.0) - 1.0) * NET_REACH;
+        let net = (0..across * across).into_par_iter().map(|index| {
+            let p = [place(index % across), place(index / across), scene.ground];
             let [seen, _] = sky.reaching(p, sky.texel(), above);
             [seen / all.max(f32::MIN_POSITIVE), self.lamp_at(p, [0.0, 0.0, 1.0])]
         });
-        (0..3).fold(net.collect(), |net: Vec<[f32; 2]>, _| blurred(&net))
+        (0..self.blurs).fold(net.collect(), |net: Vec<[f32; 2]>, _| blurred(&net, across))
     }
 
     /// The share of the lamp that a point of a surface sees.
@@ -104,15 +119,15 @@ impl Lights {
 
     /// Sky and lamp at a point of the ground: 1 is all.
     pub fn ground(&self, x: f32, y: f32) -> [f32; 2] {
-        let place = |c: f32| (c / NET_REACH + 1.0) * 0.5 * (NET as f32 - 1.0);
+        let place = |c: f32| (c / NET_REACH + 1.0) * 0.5 * (self.across as f32 - 1.0);
         let (x, y) = (place(x), place(y));
-        let last = NET as f32 - 2.0;
+        let last = self.across as f32 - 2.0;
         if self.net.is_empty() || !(x >= 0.0 && y >= 0.0 && x <= last && y <= last) {
             return [1.0; 2];
         }
         let (column, row) = (x as usize, y as usize);
         let (s, t) = (x - column as f32, y - row as f32);
-        let at = |dx: usize, dy: usize| self.net[(row + dy) * NET + column + dx];
+        let at = |dx: usize, dy: usize| self.net[(row + dy) * self.across + column + dx];
         [0, 1].map(|k| {
             let lower = at(0, 0)[k] * (1.0 - s) + at(1, 0)[k] * s;
             let upper = at(0, 1)[k] * (1.0 - s) + at(1, 1)[k] * s;
@@ -121,20 +136,21 @@ impl Lights {
     }
 }
 
-fn net_place(k: usize) -> f32 {
-    (2.0 * k as f32 / (NET as f32 - 1.0) - 1.0) * NET_REACH
+/// What of so many points or texels a picture of this size has use for.
+fn fine(most: usize, size: [usize; 2]) -> usize {
+    most * size[0].max(size[1]).clamp(SMALL / 4, SMALL) / SMALL
 }
 
-/// The mean over each point and its neighbours.
-fn blurred(net: &[[f32; 2]]) -> Vec<[f32; 2]> {
-    let around = |k: usize| k.saturating_sub(1)..=(k + 1).min(NET - 1);
-    (0..NET * NET)
+/// The mean over each point and its neighbours, of a net of so many points across.
+fn blurred(net: &[[f32; 2]], across: usize) -> Vec<[f32; 2]> {
+    let around = |k: usize| k.saturating_sub(1)..=(k + 1).min(across - 1);
+    (0..across * across)
         .into_par_iter()
         .map(|index| {
             let (mut sum, mut count) = ([0.0; 2], 0.0);
-            for row in around(index / NET) {
-                for column in around(index % NET) {
-                    let value = net[row * NET + column];
+            for row in around(index / across) {
+                for column in around(index % across) {
+                    let value = net[row * across + column];
                     sum = [sum[0] + value[0], sum[1] + value[1]];
                     count += 1.0;
                 }

@@ -183,7 +183,7 @@ impl View {
         let scene = Scene::new(drawing, towards);
         let camera = Camera::new(&Self { size, ..*self }, &scene);
         let steps = Steps::new(go_on, Lights::steps(&scene) + frame::steps(size));
-        let lights = Lights::new(&scene, &camera, &steps)?;
+        let lights = Lights::new(&scene, &camera, size, &steps)?;
         let mut image = frame::render(&scene, &camera, &lights, size, &steps)?;
         if self.axes {
             marks::draw(&mut image, &scene, &camera);

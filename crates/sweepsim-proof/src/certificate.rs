@@ -99,8 +99,8 @@ type Answering<'a> = &'a [(usize, Cutter<'a>)];
 /// How an outline is cut into solids.
 type Cover = Vec<[usize; 2]>;
 
-/// For each mover of a question, or each cutter, by their paths and outlines: its cutter, the first of its solids there,
-/// and how the outline is cut.
+/// For each mover of a question, or each cutter, by their paths and outlines: its cutter, the first of its solids
+/// there, and how the outline is cut.
 fn movers(scene: &Scene, asked: &[(usize, usize)], cutters: Answering) -> Option<Vec<(usize, usize, Cover)>> {
     let mut taken = vec![0; cutters.len()];
     let one = |(path, outline): &(usize, usize)| {

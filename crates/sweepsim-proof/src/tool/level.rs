@@ -48,7 +48,8 @@ impl Level {
         level
     }
 
-    /// How far `(ρ, ζ)` is outside of the solid, or minus how far it is inside. It is convex, and does not fall with `ρ`.
+    /// How far `(ρ, ζ)` is outside of the solid, or minus how far it is inside. It is convex, and does not fall with
+    /// `ρ`.
     pub fn signed(&self, point: [f64; 2]) -> f64 {
         let level = self.at(point);
         if level > 0.0 {

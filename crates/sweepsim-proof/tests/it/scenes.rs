@@ -315,7 +315,7 @@ fn rounding_does_not_decide_below_which_plane_a_triangle_is() {
 
 #[test]
 fn random_scenes_are_enclosed() {
-    run(40, (24, 5));
+    run(40, (16, 4));
 }
 
 #[test]

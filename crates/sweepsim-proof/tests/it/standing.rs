@@ -279,3 +279,13 @@ fn what_is_undecided_has_a_place() {
     }
     assert!(decided > 10 && open > 4, "{decided} {open}");
 }
+
+/// A point is in the ball late in a move that goes down, and comes nearer to its axis long before, below its tip.
+#[test]
+fn what_a_ball_removes_going_down_is_certified() {
+    let scene = (
+        0.830_815_524_508_524_5,
+        (0.880_791_183_680_048_3, 0.138_968_712_935_068_4),
+    );
+    check_raster((2, 0), scene.0, scene.1).expect("what is left is enclosed");
+}

@@ -126,7 +126,7 @@ pub fn seen(pointed: bool, z: f64, along: f64, across: f64) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(5))]
 
     /// The lowest point over each line is that of the tool, sampled in time.
     #[test]

@@ -16,11 +16,19 @@ use sweepsim_motion::Tool;
 
 /// Tolerances down to almost the least.
 const FINE: [f64; 5] = [1e-7, 3e-8, 1e-8, 1e-9, 6e-10];
+/// Two of them, for tests that take seconds.
+const FEW: [f64; 2] = [FINE[1], FINE[4]];
 
 /// Lines that rounding leaves undecided are given up early, and solved again at a distance, which takes about as many
 /// boxes as all lines do otherwise. `lines` leaves to charts what would have taken it fewer.
-fn cheap_at_fine_tolerances(tool: (&str, &Tool), methods: &[Method], list: &[Family], distances: &[f64]) {
-    let wrong = dear_at_fine_tolerances(tool, methods, list, distances, MOST);
+fn cheap_at_fine_tolerances(
+    tool: (&str, &Tool),
+    methods: &[Method],
+    list: &[Family],
+    distances: &[f64],
+    tolerances: &[f64],
+) {
+    let wrong = dear_at_fine_tolerances(tool, methods, list, distances, (tolerances, MOST));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
@@ -30,7 +38,7 @@ fn dear_at_fine_tolerances(
     methods: &[Method],
     list: &[Family],
     distances: &[f64],
-    most: f64,
+    (tolerances, most): (&[f64], f64),
 ) -> Vec<String> {
     let mut wrong = Vec::new();
     for &(what, family) in list {
@@ -45,7 +53,7 @@ fn dear_at_fine_tolerances(
             .iter()
             .map(|d| swept(*d, 1e-6, Method::Mixed).1.volume)
             .collect();
-        for tolerance in FINE {
+        for &tolerance in tolerances {
             for &method in methods {
                 let (generic, _) = swept(GENERIC, tolerance, method);
                 for (d, coarse) in distances.iter().zip(&coarse) {
@@ -73,7 +81,7 @@ fn dear_at_fine_tolerances(
 
 #[test]
 fn poles_over_lines_cost_little_at_fine_tolerances() {
-    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &[1e-12]);
+    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &[1e-12], &FEW);
 }
 
 /// Tools whose poles are as flat as a cubic is.
@@ -88,7 +96,13 @@ fn poles_as_flat_as_a_cubic_cost_little_by_default() {
     const DEAREST: f64 = 10.0;
     let distances = [1e-9, 0.0];
     let of_tool = |(name, tool): &(&str, Tool)| {
-        dear_at_fine_tolerances((name, tool), &[Method::Mixed], &over_poles(), &distances, DEAREST)
+        dear_at_fine_tolerances(
+            (name, tool),
+            &[Method::Mixed],
+            &over_poles(),
+            &distances,
+            (&FEW, DEAREST),
+        )
     };
     let wrong: Vec<String> = flat_poles().iter().flat_map(of_tool).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -97,10 +111,10 @@ fn poles_as_flat_as_a_cubic_cost_little_by_default() {
 #[test]
 #[ignore = "takes half a minute"]
 fn so_they_do_at_all_distances() {
-    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &DISTANCES);
+    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &DISTANCES, &FINE);
 }
 
-fn cheap_on_curves(methods: &[Method], distances: &[f64]) {
+fn cheap_on_curves(methods: &[Method], distances: &[f64], tolerances: &[f64]) {
     // By `general`, as the docs say, the line under a pole as flat as a cubic that slides straight is solved again.
     let is_dear = |name: &str, method: Method, what: &str| {
         name == "pad" && method == Method::General && what == "tilt of a level move over a line"
@@ -109,20 +123,20 @@ fn cheap_on_curves(methods: &[Method], distances: &[f64]) {
         for method in methods {
             let mut list = over_poles_on_curves();
             list.retain(|(what, _)| !is_dear(name, *method, what));
-            cheap_at_fine_tolerances((name, &tool), &[*method], &list, distances);
+            cheap_at_fine_tolerances((name, &tool), &[*method], &list, distances, tolerances);
         }
     }
 }
 
 #[test]
 fn so_they_do_on_curves() {
-    cheap_on_curves(&[Method::Mixed], &[1e-9]);
+    cheap_on_curves(&[Method::Mixed], &[1e-9], &FEW);
 }
 
 #[test]
 #[ignore = "takes two minutes"]
 fn so_they_do_on_curves_at_all_distances() {
-    cheap_on_curves(&METHODS[..2], &DISTANCES);
+    cheap_on_curves(&METHODS[..2], &DISTANCES, &FINE);
 }
 
 /// In no plane of the grid, and far from the origin: then all components of a velocity are rounded.
@@ -136,7 +150,7 @@ fn so_they_do_anywhere() {
             if what.contains("about the own axis") {
                 continue;
             }
-            for d in [0.1, 1e-3, 0.0] {
+            for d in [1e-3, 0.0] {
                 let (path, grid) = family(d);
                 let [x, y] = [0, 1].map(|k| 0.5 * (grid.min()[k] + grid.max()[k]));
                 let place = turn * Vector3::new(x, y, 0.0) + shift;

@@ -293,10 +293,14 @@ pub fn is_cheap(
 }
 
 fn all_are_cheap(methods: &[Method], distances: &[f64]) {
+    are_cheap(methods, |_| families(), distances);
+}
+
+fn are_cheap(methods: &[Method], families: impl Fn(usize) -> Vec<Family>, distances: &[f64]) {
     println!("| work on a generic neighbour, then times | {distances:?} |");
     let (mut wrong, tools) = (Vec::new(), tools());
-    for method in methods {
-        for family in families() {
+    for (number, method) in methods.iter().enumerate() {
+        for family in families(number) {
             wrong.extend(
                 tools
                     .iter()
@@ -314,7 +318,9 @@ fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
 
 #[test]
 fn so_it_does_by_all_methods() {
-    all_are_cheap(&METHODS[1..], &[1e-9]);
+    // Two methods look at every second family, two at the others.
+    let half = |number: usize| families().into_iter().skip(number % 2).step_by(2).collect();
+    are_cheap(&METHODS[1..], half, &[1e-9]);
 }
 
 #[test]

@@ -128,12 +128,12 @@ fn clearances_and_other_directions_are_the_same_in_shards() {
     let near = compare(
         &folder,
         &[&["--clearance", "0.3", "--sure"], &only[..]].concat(),
-        &[3],
+        &[2],
         1,
     );
     assert!(near.findings.unwrap().iter().any(|finding| finding.near));
     let folder = faulty();
-    let aside = compare(&folder, &[&["--directions", "xyz"], &only[..]].concat(), &[5], 1);
+    let aside = compare(&folder, &[&["--directions", "xyz"], &only[..]].concat(), &[3], 1);
     assert!(!aside.findings.unwrap().is_empty());
 }
 

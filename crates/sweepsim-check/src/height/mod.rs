@@ -1,7 +1,7 @@
 //! Why nothing that hangs together with a solid stands higher above it than `d`.
 //!
 //! Let `Σ` be all points at the distance `d` from the solid, on the outside. If none of them is left of the stock, what
-//! is farther does not hang together with the solid: a way there would cross `Σ`. [Patches](crate::patch) have all of
+//! is farther does not hang together with the solid: a way there would cross `Σ`. [Patches](patch) have all of
 //! `Σ`. A tree divides each of them, and gives for each part a reason:
 //!
 //! - **Flat**: it need not be looked at.
@@ -14,8 +14,11 @@
 //! All this holds by a [margin](crate::Scene::margin), which is larger than roundings, what is flat, and what motions
 //! deviate by.
 
+mod patch;
+
+pub(crate) use patch::{Patch, patches};
+
 use crate::motion::{Placement, Stretch};
-use crate::patch::Patch;
 use crate::scene::Scene;
 use crate::surface::{Surface, nearest_of};
 use crate::tool::{Body, Cutting};

@@ -5,12 +5,16 @@
 //! of the cell is into its eight parts, without those that the box of what is swept misses. So the leaves cover all
 //! times, and all of the cube, and nothing of the solid is outside of it.
 
-use crate::cell::Cell;
-use crate::leaf::{During, Near};
+mod cell;
+mod leaf;
+
+pub(crate) use cell::Cell;
+
 use crate::motion::Run;
 use crate::surface::Surface;
 use crate::tree::{Checked, Place, Proof, Reader, Step, walked};
 use crate::vector::{MORE, V3, add, cross, norm_up, scaled, size, sub, unit};
+use leaf::{During, Near};
 
 /// Pieces are not divided farther in time.
 const SHORTEST: f64 = 1e-12;
