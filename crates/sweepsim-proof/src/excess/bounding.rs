@@ -81,6 +81,8 @@ mod tests {
     use crate::excess::regions;
     use sweepsim_dexel::Stock;
 
+    type Reach<'a> = &'a dyn Fn(&Vector3<f64>) -> f64;
+
     /// How far the planes reach: never less far than the stock, and hardly farther.
     #[test]
     fn planes_reach_as_far_as_what_is_between_them() {
@@ -92,7 +94,7 @@ mod tests {
             n.dot(&base) + (7.0 * along).max(0.0) + 4.0 * (n - axis * along).norm()
         };
         let of_ball = |n: &Vector3<f64>| n.dot(&base) + 4.0;
-        let stocks: [(Stock, &dyn Fn(&Vector3<f64>) -> f64, f64); 3] = [
+        let stocks: [(Stock, Reach, f64); 3] = [
             (
                 Stock::Block {
                     min: low.into(),

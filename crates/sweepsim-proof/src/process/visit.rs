@@ -135,16 +135,15 @@ impl Search<'_> {
 
     /// The part of a zone that may come near to the stock, and its number; what is higher is beside it.
     fn below_top(&self, zone: Zone, node: usize, record: &mut Record) -> (Zone, usize) {
-        let cut = zone.cut(self.top(zone.times)).and_then(|(how, [below, above])| {
-            let samples = above.samples(&self.turned);
-            let why = self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone))?;
-            Some((how, below, why))
-        });
-        let Some((how, below, why)) = cut else {
+        let Some((how, [below, above])) = zone.cut(self.top(zone.times)) else {
             return (zone, node);
         };
+        let samples = above.samples(&self.turned);
         let first = record.divided(node, how, 2);
-        record.done(first + 1, Some(why));
+        record.done(
+            first + 1,
+            self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone)),
+        );
         (below, first)
     }
 

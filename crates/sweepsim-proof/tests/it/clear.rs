@@ -140,6 +140,21 @@ fn only_what_was_cut_before_counts() {
     // Both are rapids: what the first removes is not cut.
     assert!(!accepted(&[0, 1], &[CUT, CUT, CUT].concat()));
     assert!(!accepted(&[0, 1], &[CUT, CUT].concat()));
+    // Another course that the rapid may take begins where it does; one from elsewhere has to be looked at there.
+    let other = |from: f64, leaves: usize| {
+        let mut own = by_hand(&there_and_back(&[1]), Movers::Rapids, &CUT.repeat(leaves));
+        let mut other = own.scene.paths[0][1].clone();
+        other.possible = true;
+        let Course::Linear(poses) = &mut other.course else {
+            panic!("linear")
+        };
+        poses[0][0][0] = from;
+        own.scene.paths[0].push(other);
+        own.claim.trees[0].count = 3;
+        own.checked().is_proven()
+    };
+    assert!(other(40.0, 3) && !other(40.0, 2) && !other(40.0, 4));
+    assert!(other(39.0, 4) && !other(39.0, 3));
     // Of a later path, nothing counts; of an earlier one, all.
     let later = |numbers: [usize; 2], bytes: &[u8]| {
         let mut own = by_hand(&there_and_back(&[0, 1]), Movers::Rapids, bytes);
