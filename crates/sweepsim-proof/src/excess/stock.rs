@@ -216,9 +216,14 @@ impl Before {
         self.outer.iter().map(&mut one).collect()
     }
 
-    /// Whether it is within several regions between planes.
-    pub fn is_several(&self) -> bool {
-        self.outer.len() > 1 && self.outer.iter().all(|outer| matches!(outer, Outer::Planes(_)))
+    /// In how many regions it is.
+    pub fn regions(&self) -> usize {
+        self.outer.len()
+    }
+
+    /// Whether all of these are between planes.
+    pub fn is_between_planes(&self) -> bool {
+        self.outer.iter().all(|outer| matches!(outer, Outer::Planes(_)))
     }
 
     /// Whether it is known to be convex.

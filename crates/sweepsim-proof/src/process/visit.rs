@@ -139,11 +139,13 @@ impl Search<'_> {
             return (zone, node);
         };
         let samples = above.samples(&self.turned);
+        let why = self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone));
+        // Where a path bends, a checker may not see it yet.
+        if why.is_none() && self.scene.history.before.is_between_planes() {
+            return (zone, node);
+        }
         let first = record.divided(node, how, 2);
-        record.done(
-            first + 1,
-            self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone)),
-        );
+        record.done(first + 1, why);
         (below, first)
     }
 
@@ -235,17 +237,18 @@ impl Search<'_> {
         let normal = middle.map_or_else(Vector3::z, |(_, _, normal)| normal);
         let centre = samples.middle();
         let normal = self.away(&samples, normal);
-        if scene.history.before.is_beside(&corners, &normal, need) {
+        let before = &scene.history.before;
+        if before.is_beside(&corners, &normal, need) {
             let why = self.beside(&samples, &normal, need);
             // Beside each of several regions, but between them, is not beside all.
-            if why.is_some() || !scene.history.before.is_several() {
+            if why.is_some() || !(before.is_between_planes() && before.regions() > 1) {
                 return Visit::Free(why);
             }
         }
         let mut is_whole = true;
         if samples.are_points() {
             let count = corners.len();
-            let near = scene.history.before.near(corners, need);
+            let near = before.near(corners, need);
             is_whole = near.len() == count;
             if near.is_empty() {
                 return Visit::Free(Some(Bytes::from_slice(&[2])));
