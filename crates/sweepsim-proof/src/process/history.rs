@@ -170,9 +170,17 @@ fn held_by(samples: &Samples, candidate: &Candidate, need: f64) -> (Held, Times)
         let is_held = |ring: &Ring| {
             let of = |time: f64| ring.level(level, &stretch.at(latest * time), -need);
             let near = |time: f64| if latest > 0.0 { (time / latest).min(1.0) } else { 0.0 };
-            let [middle, own] = [candidate.time, quick(level, stretch, &ring.centre).1].map(near);
-            let first = of(middle).min(of(own)).min(of(0.0)).min(of(1.0));
-            narrowed(of, first, STEPS, |least, _| (least <= -need).then_some(true)).unwrap_or(false)
+            let is_it = |time: f64| of(time) <= -need;
+            let is_near = || is_it(near(quick(level, stretch, &ring.centre).1));
+            if is_it(near(candidate.time)) || is_near() || is_it(0.0) || is_it(1.0) {
+                return true;
+            }
+            // Levels change no faster than the solid moves.
+            let known = |least: f64, times: f64| {
+                let is_far = least > stretch.travel(0.0, latest * times) - need;
+                (least <= -need || is_far).then_some(!is_far)
+            };
+            narrowed(of, of(1.0), STEPS, known).unwrap_or(false)
         };
         return (samples.rings.iter().map(is_held).collect(), Times::new());
     }
