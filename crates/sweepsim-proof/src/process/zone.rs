@@ -52,7 +52,11 @@ impl Zone {
             let own: SmallVec<[([f64; 2], f64); 8]> = match piece {
                 Piece::Line(ends) => ends.iter().map(|end| (*end, 0.0)).collect(),
                 Piece::Points(points) => points.iter().map(|point| (*point, 0.0)).collect(),
-                Piece::Arc { centre, radius, .. } if self.is_whole => smallvec![(*centre, *radius)],
+                // Its ends are in the ball, but count for where the middle of the zone is.
+                Piece::Arc { centre, radius, angles } if self.is_whole => {
+                    let [first, last] = angles.map(|angle| (at(*centre, angle, *radius), 0.0));
+                    smallvec![first, (*centre, *radius), last]
+                }
                 // Both ends, and where their tangents meet.
                 Piece::Arc { centre, radius, angles } => {
                     let half = 0.5 * (angles[1] - angles[0]);
