@@ -12,7 +12,7 @@ use thiserror::Error;
 /// What a certificate says that it is.
 const FORMAT: &str = "sweepsim certificate";
 /// Certificates of other versions are refused.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 /// The last field of the file.
 const DIGEST: &str = ",\"digest\":\"";
 /// Trees of more bytes are not taken.
@@ -63,7 +63,8 @@ pub struct Claim {
     pub root: ([f64; 3], f64),
     /// For depths, how far what moves is lifted off what is near a cell, about.
     pub lift: f64,
-    /// For each mover, of which curves its solids are: so many together, or one in so many parts.
+    /// For each mover, and then for each cutter, of which curves its solids are: so many together, or one in so many
+    /// parts.
     pub covers: Vec<Vec<[usize; 2]>>,
     /// The proof.
     pub trees: Vec<Tree>,

@@ -4,25 +4,25 @@
 //! tools and paths as plain numbers, and what is asked. It shares no code with the prover, and rounds all bounds
 //! outwards. The crate's README has the statements, the format, and where each step is proven.
 
-mod cell;
 mod certificate;
 mod check;
+mod clear;
+mod depth;
 mod height;
-mod leaf;
 mod motion;
-mod patch;
 mod scene;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod tool;
+mod tree;
 mod vector;
-mod walk;
+mod zone;
 
 pub use certificate::{Certificate, Claim, FileDigest, NoCertificate, Tree, Witness, digest_of, packed};
-pub use check::{Checked, check};
+pub use check::check;
 pub use scene::{Course, Curve, Measure, Motion, Outline, Plane, Question, Scene, Triangle};
-pub use walk::Failed;
+pub use tree::{Checked, Failed};
 
 /// The README's example is tested.
 #[cfg(doctest)]

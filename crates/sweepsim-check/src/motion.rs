@@ -148,6 +148,11 @@ impl Stretch {
         self.axis.controls.len() == 1
     }
 
+    /// The axis turns by no more, in radians.
+    pub fn turning(&self) -> f64 {
+        self.axis.speed
+    }
+
     /// Whether each point goes along a line.
     pub fn is_straight(&self) -> bool {
         self.keeps_axis() && self.tip.bend == 0.0

@@ -19,8 +19,10 @@ pub struct Scene {
     pub paths: Vec<Vec<Motion>>,
     /// No point of a body is farther than this from where [rational motions](Course::Rational) say.
     pub deviation: f64,
-    /// The material is within one of these convex regions.
+    /// The material is within one of these convex regions, without a skin
     pub stock: Vec<Vec<Plane>>,
+    /// of this thickness.
+    pub skin: f64,
     /// Points are only known to be removed, or outside of the stock, if they are so by this.
     pub margin: f64,
     /// What is asked.
@@ -36,6 +38,8 @@ pub type Outline = Vec<Curve>;
 pub enum Curve {
     /// A rational Bézier curve: its control points, each with its weight; two are a line.
     Bezier(Vec<([f64; 2], f64)>),
+    /// No curve, but points: their hull, turned about the axis, has the tool in it.
+    Hull(Vec<[f64; 2]>),
     /// An arc of a circle.
     Arc {
         /// The centre.
@@ -54,6 +58,8 @@ pub struct Motion {
     pub number: usize,
     /// Whether it is only possible that the tool moves so: another course of a rapid.
     pub possible: bool,
+    /// Whether it must not cut, as rapids must not: it counts as removing nothing.
+    pub idle: bool,
     /// How it moves.
     pub course: Course,
 }
@@ -81,10 +87,12 @@ pub struct Question {
     pub measure: Measure,
     /// What is measured should be no more.
     pub limit: f64,
-    /// The number of the solid.
+    /// The number of the solid, if it is about one.
     pub solid: usize,
     /// What moves: a path and an outline each.
     pub movers: Vec<(usize, usize)>,
+    /// If it is about material, what cuts it: a path and an outline each. Paths come one after the other.
+    pub cutters: Vec<(usize, usize)>,
 }
 
 /// What is measured.
@@ -95,6 +103,11 @@ pub enum Measure {
     Depth,
     /// How high what is left of the stock stands above the solid in the end, as far as it hangs together with it.
     Height,
+    /// How deep a mover gets into what is left of the stock at that time; less than 0 is how far it stays away. The
+    /// depth of a point is its distance from what was removed before, or is outside of the stock.
+    Material,
+    /// The same in motions that must not cut.
+    MaterialInRapids,
 }
 
 impl Scene {

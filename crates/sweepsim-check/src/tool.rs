@@ -13,9 +13,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(crate) type P2 = [f64; 2];
 
-/// How much faster than the way a solid counts as becoming narrower beyond its ends.
-const STEEP: f64 = 1e3;
-
 /// The hull of corners and arcs `(ρ, ζ)`, turned about the axis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Body {
@@ -25,18 +22,30 @@ pub(crate) struct Body {
     pub reach: f64,
     /// The lowest and the highest `ζ`.
     pub heights: [f64; 2],
-    /// The curves that it is the hull of, if it is part of the tool.
-    curves: Vec<Curve>,
+    /// Its part of the outline, from the tip to the top.
+    pub pieces: Vec<Piece>,
+    /// What it is between, if it is part of the tool.
+    sides: Option<Sides>,
 }
 
-/// An arc of at most 90°.
+/// An arc, or a corner with a radius of 0: its centre, its radius, and the unit normals at its ends, counter-clockwise.
 #[derive(Clone, Debug)]
-struct Arc {
-    centre: P2,
-    radius: f64,
-    /// The unit normals at its ends, counter-clockwise.
-    normals: [P2; 2],
+struct Arc(P2, f64, [P2; 2]);
+
+/// Arcs and corners, and lines: points on them, and their normals.
+type Sides = (Vec<Arc>, Vec<(P2, P2)>);
+
+/// A part of an outline.
+#[derive(Clone, Debug)]
+pub(crate) enum Piece {
+    /// In the hull of some points: two are a line.
+    Points(Vec<P2>),
+    /// An arc of at most 90° around the first, with a radius, between two angles.
+    Arc(P2, f64, P2),
 }
+
+/// The solids of something that cuts, its path, and the motions on which it does: numbers of the path's.
+pub(crate) type Cutting<'a> = (&'a [Body], usize, Vec<usize>);
 
 fn dot2(a: P2, b: P2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
@@ -61,10 +70,11 @@ pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body
                 body.add(curve, part, *parts)
                     .ok_or("a curve of a tool is none, or is not cut into enough parts")?;
             }
+            let mut body = body.closed().ok_or("a solid of a tool is none")?;
             if *parts == 1 && rises && turns_left(curves) {
-                body.curves = curves.to_vec();
+                body.sides = sides(curves);
             }
-            all.push(body.closed().ok_or("a solid of a tool is none")?);
+            all.push(body);
         }
         at = if *parts == 1 || *parts > 1 && *count == 1 {
             end
@@ -91,6 +101,7 @@ fn directions(curve: &Curve) -> Option<[P2; 2]> {
             let length = way[0].hypot(way[1]);
             (length > 0.0).then_some([way.map(|c| c / length); 2])
         }
+        Curve::Hull(_) => None,
         Curve::Arc { angles, .. } => {
             let way = (angles[1] - angles[0]).signum();
             ((angles[1] - angles[0]).abs() <= PI + STRAIGHT).then_some(angles.map(|a| [-way * a.sin(), way * a.cos()]))
@@ -110,6 +121,31 @@ fn turns_left(curves: &[Curve]) -> bool {
         && curves.iter().all(rising)
 }
 
+/// What is beside some curves is between their arcs and the lines at their ends. Where they meet, it ends at a corner,
+/// and it lies between their lowest and highest points.
+fn sides(curves: &[Curve]) -> Option<Sides> {
+    let (mut arcs, mut before) = (Vec::new(), [0.0, -1.0]);
+    let mut lines: Vec<(P2, P2)> = Vec::new();
+    let mut last = [0.0; 2];
+    for curve in curves {
+        let normals = directions(curve)?.map(|way| [way[1], -way[0]]);
+        let ends = match curve {
+            Curve::Bezier(controls) => [controls[0].0, controls[1].0],
+            Curve::Arc { centre, radius, .. } => normals.map(|n| [0, 1].map(|k| centre[k] + radius * n[k])),
+            Curve::Hull(_) => return None,
+        };
+        if let Curve::Arc { centre, radius, .. } = curve {
+            arcs.push(Arc(*centre, *radius, normals));
+        }
+        lines.extend([(ends[0], before), (ends[0], normals[0]), (ends[1], normals[1])]);
+        arcs.push(Arc(ends[0], 0.0, [before, normals[0]]));
+        (before, last) = (normals[1], ends[1]);
+    }
+    arcs.push(Arc(last, 0.0, [before, [0.0, 1.0]]));
+    lines.push((last, [0.0, 1.0]));
+    Some((arcs, lines))
+}
+
 impl Body {
     /// One of the parts of a curve.
     fn add(&mut self, curve: &Curve, part: usize, parts: usize) -> Option<()> {
@@ -126,8 +162,12 @@ impl Body {
                 } else {
                     halves(&last, from / to)[1].clone()
                 };
-                self.corners.extend(own.iter().map(|(point, _)| *point));
+                self.piece(own.iter().map(|(point, _)| *point).collect());
                 (!own.is_empty() && controls.iter().all(|(_, weight)| *weight > 1e-6)).then_some(())
+            }
+            Curve::Hull(points) => {
+                self.piece(points.clone());
+                (parts == 1).then_some(())
             }
             Curve::Arc { centre, radius, angles } => {
                 let at = |angle: f64, r: f64| [centre[0] + r * angle.cos(), centre[1] + r * angle.sin()];
@@ -135,28 +175,30 @@ impl Body {
                 if to <= from {
                     // It is between its chord and the lines that touch it at its ends.
                     let (middle, half) = (0.5 * (from + to), 0.5 * (from - to));
-                    self.corners
-                        .extend([at(from, *radius), at(middle, radius / half.cos()), at(to, *radius)]);
+                    self.piece(vec![
+                        at(from, *radius),
+                        at(middle, radius / half.cos()),
+                        at(to, *radius),
+                    ]);
                     return (half < 0.8 && *radius > 0.0).then_some(());
                 }
                 let count = ((to - from) / FRAC_PI_2 - 1e-9).ceil().max(1.0);
-                let normal = |k: f64| {
-                    let angle = from + (to - from) * k / count;
-                    [angle.cos(), angle.sin()]
-                };
                 for k in 0..count.min(5.0) as usize {
-                    let normals = [normal(k as f64), normal((k + 1) as f64)];
+                    let angles = [k, k + 1].map(|k| from + (to - from) * k as f64 / count);
+                    self.pieces.push(Piece::Arc(*centre, *radius, angles));
+                    let normals = angles.map(|angle| [angle.cos(), angle.sin()]);
                     self.corners
                         .extend(normals.map(|n| [0, 1].map(|i| centre[i] + radius * n[i])));
-                    self.arcs.push(Arc {
-                        centre: *centre,
-                        radius: *radius,
-                        normals,
-                    });
+                    self.arcs.push(Arc(*centre, *radius, normals));
                 }
                 (count < 5.0 && *radius > 0.0).then_some(())
             }
         }
+    }
+
+    fn piece(&mut self, points: Vec<P2>) {
+        self.corners.extend(&points);
+        self.pieces.push(Piece::Points(points));
     }
 
     /// With the axis beside it.
@@ -165,7 +207,7 @@ impl Body {
         let arcs = self
             .arcs
             .iter()
-            .map(|arc| arc.centre[0].hypot(arc.centre[1]) + arc.radius);
+            .map(|Arc(centre, radius, _)| centre[0].hypot(centre[1]) + radius);
         self.reach = corners.chain(arcs).fold(0.0, f64::max) * MORE;
         self.heights = [-self.meridian([0.0, -1.0], 1.0), self.meridian([0.0, 1.0], 1.0)];
         self.corners.extend(self.heights.map(|height| [0.0, height]));
@@ -188,62 +230,32 @@ impl Body {
     fn meridian(&self, d: P2, length: f64) -> f64 {
         let corners = self.corners.iter().map(|corner| dot2(d, *corner));
         let mut best = corners.fold(f64::NEG_INFINITY, f64::max);
-        for arc in &self.arcs {
-            let [from, to] = arc.normals;
+        for Arc(centre, radius, [from, to]) in &self.arcs {
+            let [from, to] = [*from, *to];
             let near = -1e-12 * length;
             // The whole circle reaches at least as far: the test need not be exact, if it is wide enough.
             if cross2(from, d) >= near && cross2(d, to) >= near && dot2(d, from) + dot2(d, to) > 0.0 {
-                best = best.max(dot2(d, arc.centre) + arc.radius * length);
+                best = best.max(dot2(d, *centre) + radius * length);
             }
         }
         best
     }
 
-    /// More than 0 if a point is in the tool by less than `margin`, or is not known to be. `None` of a solid that is no
-    /// part of the tool.
+    /// How far a point is outside, or minus how far it is inside. `None` of a solid that is no part of the tool.
     ///
-    /// It is convex, so that a search along a line does not end beside the least: beyond its ends, the solid counts as
-    /// becoming narrower as fast as there, or almost so where it has a round end.
-    pub fn off(&self, [rho, zeta]: P2, margin: f64) -> Option<f64> {
-        let [low, high] = self.heights;
-        let beyond = (low - zeta).max(zeta - high) + margin;
-        let clamped = [zeta - margin, zeta + margin].map(|zeta| zeta.clamp(low, high));
-        let width = clamped
-            .map(|zeta| self.width(zeta))
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
-        let narrower = STEEP * beyond.max(0.0);
-        (!self.curves.is_empty()).then_some((STEEP * beyond).max(rho + margin - width + narrower))
-    }
-
-    /// How far the curves are from the axis at a height.
-    fn width(&self, zeta: f64) -> f64 {
-        let own = |curve: &Curve| match curve {
-            Curve::Bezier(controls) => {
-                let ([r, from], [s, to]) = (controls[0].0, controls[controls.len() - 1].0);
-                let at = if to > from {
-                    r + (s - r) * (zeta - from) / (to - from)
-                } else {
-                    r.max(s)
-                };
-                if from <= zeta && zeta <= to {
-                    at
-                } else {
-                    f64::NEG_INFINITY
-                }
-            }
-            Curve::Arc { centre, radius, angles } => {
-                let height = (zeta - centre[1]) / radius;
-                // Where curves meet, one of them has the height, whatever rounding says.
-                let is_there = angles[0].sin() - 1e-12 <= height && height <= angles[1].sin() + 1e-12;
-                if is_there {
-                    centre[0] + radius * (1.0 - height * height).max(0.0).sqrt()
-                } else {
-                    f64::NEG_INFINITY
-                }
-            }
-        };
-        self.curves.iter().map(own).fold(f64::NEG_INFINITY, f64::max)
+    /// That is the largest `⟨n, p⟩ − h(n)` over all unit normals `n` of a convex set with the support `h`: those of
+    /// lines, and those between the ends of an arc or at a corner, of which the one towards the point is the best.
+    pub fn level(&self, p: P2) -> Option<f64> {
+        let (arcs, lines) = self.sides.as_ref()?;
+        let from = |q: P2| [p[0] - q[0], p[1] - q[1]];
+        let beyond = lines.iter().map(|(q, n)| dot2(*n, from(*q)));
+        let around = arcs.iter().filter_map(|Arc(centre, radius, [first, last])| {
+            let (off, [first, last]) = (from(*centre), [*first, *last]);
+            let is_ahead = dot2(first, off) >= 0.0 || dot2(last, off) >= 0.0;
+            let is_between = cross2(first, off) >= 0.0 && cross2(off, last) >= 0.0;
+            (is_ahead && is_between).then(|| off[0].hypot(off[1]) - radius)
+        });
+        Some(beyond.chain(around).fold(f64::NEG_INFINITY, f64::max))
     }
 }
 

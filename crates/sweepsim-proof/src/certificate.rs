@@ -2,10 +2,12 @@
 
 use crate::excess::Left;
 use crate::motion::{Cutter, Piece};
+use crate::process::Touched;
 use crate::search::{Closest, Enclosed, TOGETHER, Tree};
 use crate::solid::Target;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::ops::Range;
 use sweepsim_check::{Claim, Course, Curve, Motion, Outline, Question, Scene, Witness, packed};
 use sweepsim_motion::{MeridianCurve, MeridianShape, Segment, Tool};
 
@@ -34,15 +36,15 @@ pub fn outline(tool: &Tool) -> Outline {
     for patch in tool.patches() {
         for (i, weight) in patch.weight().coefficients().iter().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
-            points.push(([x.hypot(y), z], 1.0));
+            points.push([x.hypot(y), z]);
         }
     }
-    vec![Curve::Bezier(points)]
+    vec![Curve::Hull(points)]
 }
 
-/// The motions of a path, in the order in which proofs look at them.
+/// The motions of a path, in the order in which proofs look at them. `is_idle`: whether a move must not cut.
 #[must_use]
-pub fn motions(cutter: &Cutter, deviation: f64) -> Vec<Motion> {
+pub fn motions(cutter: &Cutter, deviation: f64, is_idle: &dyn Fn(usize) -> bool) -> Vec<Motion> {
     let count = cutter.path.moves();
     let mut all = Vec::with_capacity(count);
     for first in (0..count).step_by(TOGETHER) {
@@ -50,6 +52,7 @@ pub fn motions(cutter: &Cutter, deviation: f64) -> Vec<Motion> {
         all.extend(pieces.iter().map(|piece| Motion {
             number: piece.number,
             possible: piece.is_other,
+            idle: is_idle(piece.number),
             course: course(piece),
         }));
     }
@@ -96,8 +99,9 @@ type Answering<'a> = &'a [(usize, Cutter<'a>)];
 /// How an outline is cut into solids.
 type Cover = Vec<[usize; 2]>;
 
-/// For each mover of a question: its cutter, the first of its solids there, and how the outline is cut.
-fn movers(scene: &Scene, question: &Question, cutters: Answering) -> Option<Vec<(usize, usize, Cover)>> {
+/// For each mover of a question, or each cutter, by their paths and outlines: its cutter, the first of its solids
+/// there, and how the outline is cut.
+fn movers(scene: &Scene, asked: &[(usize, usize)], cutters: Answering) -> Option<Vec<(usize, usize, Cover)>> {
     let mut taken = vec![0; cutters.len()];
     let one = |(path, outline): &(usize, usize)| {
         let number = cutters.iter().position(|(own, _)| own == path)?;
@@ -111,7 +115,7 @@ fn movers(scene: &Scene, question: &Question, cutters: Answering) -> Option<Vec<
         }
         Some((number, first, cover))
     };
-    question.movers.iter().map(one).collect()
+    asked.iter().map(one).collect()
 }
 
 /// Trees in the numbers of a question; nothing if one of them was too large.
@@ -121,7 +125,7 @@ fn trees(
     cutters: Answering,
     all: &[Tree],
 ) -> Option<(Vec<Cover>, Vec<sweepsim_check::Tree>)> {
-    let movers = movers(scene, question, cutters)?;
+    let movers = movers(scene, &question.movers, cutters)?;
     let one = |tree: &Tree| {
         let own = |(cutter, first, _): &(usize, usize, _)| *cutter == tree.path && *first <= tree.solid;
         let mover = movers.iter().rposition(own)?;
@@ -201,10 +205,66 @@ pub fn distance_claim(
     })
 }
 
+/// Trees are about so many motions, and some more.
+const MOTIONS: usize = 1 << 14;
+
+/// An answer to a question about material: nothing if it was not proven, or not in a way that can be checked. `bound`:
+/// what is measured is no more.
+#[must_use]
+pub fn material_claim(
+    scene: &Scene,
+    question: &Question,
+    [own, cutters]: [Answering; 2],
+    bound: f64,
+    touched: &Touched,
+) -> Option<Claim> {
+    let found = touched.trees.as_ref()?;
+    let moving = movers(scene, &question.movers, own)?;
+    let mut trees = Vec::new();
+    for (mover, (cutter, first_solid, cover)) in moving.iter().enumerate() {
+        let path = own[*cutter].0;
+        for solid in 0..cover.iter().map(|[_, parts]| parts).sum() {
+            let is_own = |tree: &&Tree| tree.path == path && tree.solid == first_solid + solid;
+            let own: Vec<&Tree> = found.iter().filter(is_own).collect();
+            let length = scene.paths[path].len();
+            let (mut first, mut bytes) = (0, Vec::new());
+            // Where no tree is, nothing is looked at.
+            for (number, tree) in own.iter().enumerate() {
+                bytes.extend_from_slice(&tree.bytes);
+                let next = own.get(number + 1);
+                let end = next.map_or(length, |next| first_motion(&scene.paths[path], next.moves.start));
+                if end - first >= MOTIONS || next.is_none() {
+                    trees.push((mover, solid, first..end, std::mem::take(&mut bytes)));
+                    first = end;
+                }
+            }
+            if first < length {
+                trees.push((mover, solid, first..length, Vec::new()));
+            }
+        }
+    }
+    let packed = |(mover, solid, motions, bytes): (usize, usize, Range<usize>, Vec<u8>)| sweepsim_check::Tree {
+        mover,
+        solid,
+        first: motions.start,
+        count: motions.len(),
+        bytes: packed(&bytes),
+    };
+    let cutters = movers(scene, &question.cutters, cutters)?;
+    let covers = moving.into_iter().chain(cutters);
+    Some(Claim {
+        about: question.about.clone(),
+        bound,
+        covers: covers.map(|(_, _, cover)| cover).collect(),
+        trees: trees.into_par_iter().map(packed).collect(),
+        ..Claim::default()
+    })
+}
+
 /// An answer to a question about heights.
 #[must_use]
 pub fn height_claim(scene: &Scene, question: &Question, cutters: Answering, left: &Left) -> Option<Claim> {
-    let covers = movers(scene, question, cutters)?
+    let covers = movers(scene, &question.movers, cutters)?
         .into_iter()
         .map(|(_, _, cover)| cover)
         .collect();

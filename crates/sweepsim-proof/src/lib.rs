@@ -16,7 +16,7 @@ mod solid;
 mod statement;
 mod tool;
 
-pub use certificate::{depth_claim, distance_claim, height_claim, motions, outline};
+pub use certificate::{depth_claim, distance_claim, height_claim, material_claim, motions, outline};
 pub use excess::{Left, PatchTrees, highest, highest_from, margin, regions};
 pub use motion::{Cutter, Piece};
 pub use process::{Movers, Remains, Room, Touched, Work, touched, touched_from};

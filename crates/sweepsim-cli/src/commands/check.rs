@@ -68,6 +68,9 @@ fn stated(statement: &CheckedStatement, bound: f64, known: Option<f64>) -> Strin
     let most = words::measure(bound.abs());
     match statement.measure {
         Measure::Height => format!("height of at most {most} mm"),
+        Measure::Material | Measure::MaterialInRapids if bound >= 0.0 => {
+            format!("depth in material of at most {most} mm")
+        }
         _ if bound < 0.0 => format!("distance of at least {most} mm"),
         _ => format!("depth of at most {most} mm{}", least.unwrap_or_default()),
     }
@@ -76,10 +79,10 @@ fn stated(statement: &CheckedStatement, bound: f64, known: Option<f64>) -> Strin
 /// What a statement says, and what is against it.
 fn said(statement: &CheckedStatement) -> [String; 2] {
     let limit = words::measure(statement.limit.abs());
-    let into = if statement.about == "fixture" {
-        "a fixture"
-    } else {
-        "the target"
+    let into = match statement.about.as_str() {
+        "fixture" => "a fixture",
+        "collision" => "the stock as it is at that time",
+        _ => "the target",
     };
     match statement.about.as_str() {
         "gouge" => [
@@ -90,13 +93,18 @@ fn said(statement: &CheckedStatement) -> [String; 2] {
             format!("nothing that hangs together with the target stands higher above it than {limit} mm"),
             format!("something stands higher above the target than {limit} mm"),
         ],
+        // In rapids, with the spindle stopped, or before the first feed.
+        "rapid" => [
+            format!("no cutter goes deeper into the stock than {limit} mm where it must not cut"),
+            format!("a cutter goes deeper into the stock than {limit} mm where it must not cut"),
+        ],
         _ if statement.limit < 0.0 => [
             format!("no shank or holder comes nearer to {into} than {limit} mm"),
             format!("a shank or holder comes nearer to {into} than {limit} mm"),
         ],
-        "holder" => [
-            format!("no shank or holder goes deeper into the target than {limit} mm"),
-            format!("a shank or holder goes deeper into the target than {limit} mm"),
+        "holder" | "collision" => [
+            format!("no shank or holder goes deeper into {into} than {limit} mm"),
+            format!("a shank or holder goes deeper into {into} than {limit} mm"),
         ],
         _ => [
             format!("nothing goes deeper into a fixture than {limit} mm"),

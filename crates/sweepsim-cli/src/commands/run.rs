@@ -88,7 +88,7 @@ impl Process {
             let wanted = outcome.plan().request().wanted();
             let written = outcome.write_to(&mut outputs, wanted, &progress)?;
             if let Some(file) = certificate {
-                let none = "there is nothing to certify: no target, or a proof that was too long";
+                let none = "there is nothing to certify: nothing was decided, or a proof was too long";
                 let none = || JobError::Request {
                     field: "certificate",
                     why: none.to_owned(),

@@ -1,5 +1,6 @@
 //! Certificates: what was proven, written so that others can check it, and the check.
 
+use super::asked::material::is_guessed;
 use super::asked::solids;
 use super::asked::{Asked, AskedAll};
 use super::proof::Certified;
@@ -92,7 +93,8 @@ pub struct CheckedCertificate {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct CheckedStatement {
-    /// What was asked: `gouge`, `excess`, `holder` or `fixture`; of fixtures, there is a question for each solid.
+    /// What was asked: `gouge`, `excess`, `holder`, `fixture`, `rapid` or `collision`; of fixtures, there is a question
+    /// for each solid.
     pub about: String,
     /// What was measured.
     pub measure: Measure,
@@ -150,7 +152,7 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
     if let Some(changed) = files.iter().find(|stated| !is_there(stated)) {
         return Err(other(format!("{} has changed, or is not there", changed.file)));
     }
-    let asked = AskedAll::new(&plan.job, &plan.request);
+    let asked = AskedAll::new(&plan.job, &plan.request, is_guessed(&plan));
     // A checker of heights takes it as given that triangles do not cross.
     let is_height = |asked: &&Asked| asked.measure == Measure::Height;
     let heights = asked.statements.iter().filter(is_height);

@@ -1,5 +1,6 @@
 //! What a verdict is about, and what it is not.
 
+use super::asked::material::is_guessed;
 use crate::request::Input;
 use crate::session::Session;
 use crate::shards::{Purpose, TilingSet};
@@ -24,12 +25,7 @@ pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
 
 /// Whether all that is looked at on the lines is looked at between them as well.
 fn is_proven(session: Session) -> bool {
-    session.request.judging.proof && !session.request.judging.first && !is_guessed(session)
-}
-
-/// Whether the stock was guessed.
-pub(super) fn is_guessed(session: Session) -> bool {
-    session.plan.guessed().iter().any(|guess| guess.about == "stock")
+    session.request.judging.proof && !session.request.judging.first && !is_guessed(session.plan)
 }
 
 fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
@@ -80,7 +76,7 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
             &["machine"],
         ));
     }
-    if is_guessed(session) {
+    if is_guessed(session.plan) {
         let needs = needs("`stock` in the job", "--stock");
         let about = "rapids through the real stock: it was guessed";
         all.push(NotLookedAt::new(about, needs, &["rapid"]).partly(true));

@@ -63,6 +63,8 @@ fn every_changed_byte_of_all_statements_is_refused() {
         ("holder", Measure::Depth, true),
         ("fixture", Measure::Depth, false),
         ("fixture", Measure::Depth, true),
+        ("rapid", Measure::MaterialInRapids, false),
+        ("collision", Measure::Material, true),
     ];
     assert_eq!(all, expected);
     assert!(found.holds(), "{found:?}");
@@ -90,7 +92,7 @@ fn every_changed_byte_of_all_statements_is_refused() {
                 for own in &found.statements {
                     let (bound, _) = own.claimed.expect("a claim");
                     let truth = match (own.about.as_str(), own.limit < 0.0) {
-                        ("holder", _) => -26.0,
+                        ("holder" | "collision", _) => -26.0,
                         (_, true) => -21.0,
                         _ => 0.0,
                     };
@@ -103,6 +105,47 @@ fn every_changed_byte_of_all_statements_is_refused() {
     assert!(refused > 10 * accepted && refused > 100, "{refused} {accepted}");
 }
 
+/// Without a target, what is proven of the stock can be checked.
+#[test]
+fn the_stock_is_enough() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("slot.nc"), PROGRAM).expect("written");
+    let said = |job: &str| {
+        let file = folder.path().join("job.ron");
+        fs::write(&file, job).expect("written");
+        let outcome = Request::from_file(&file)
+            .plan()
+            .expect("a plan")
+            .run(&())
+            .expect("a result");
+        let text = outcome.certificate().expect("a notation")?;
+        let file = folder.path().join("certificate.json");
+        fs::write(&file, &text).expect("written");
+        let found = check(&file, 1).expect("a certificate");
+        Some(
+            found
+                .statements
+                .iter()
+                .map(|own| (own.about.clone(), own.holds()))
+                .collect::<Vec<_>>(),
+        )
+    };
+    let all = |holds: bool| Some(vec![("rapid".to_owned(), true), ("collision".to_owned(), holds)]);
+    let job = r#"Job(
+        grid: Grid(min: (0, 0), max: (60, 40), cells: (30, 20)),
+        stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
+        tools: {1: Flat(radius: 5, length: 4)},
+        bodies: {1: [Shank(Profile(start: (0, 4), segments: [Line((5, 4)), Line((5, 50)), Line((0, 50))]))]},
+        paths: [Path(tool: 1, file: "slot.nc")],
+    )"#;
+    // The shank ends where the stock does; a millimetre longer, it is in what the flutes have not cut.
+    assert_eq!(said(job), all(true));
+    let deep = { job.replace("length: 4)", "length: 3)") }
+        .replace("(0, 4)", "(0, 3)")
+        .replace("(5, 4)", "(5, 3)");
+    assert_eq!(said(&deep), all(false));
+}
+
 #[test]
 fn other_files_and_options_are_refused() {
     let (folder, file, text) = certified();
@@ -113,6 +156,7 @@ fn other_files_and_options_are_refused() {
         ("max: (-5, 40, 5)", "max: (-5, 40, 5.001)"),
         ("Line((12, 50))", "Line((12, 50.5))"),
         ("max: (60, 40, 0))", "max: (60, 40, 0.001))"),
+        ("Flat(radius: 5,", "Flat(radius: 5.001,"),
     ] {
         assert!(JOB.contains(from), "{from}");
         fs::write(folder.path().join("job.ron"), JOB.replacen(from, to, 1)).expect("written");

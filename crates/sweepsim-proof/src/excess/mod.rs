@@ -8,6 +8,7 @@
 //! the stock, or in one convex solid that was removed: an exact part of a cutter at some time, or all along a straight
 //! stretch; or if they are nearer to one triangle than `d`, so that the patch is not in `Σ`. Else it is divided.
 
+mod bounding;
 mod found;
 mod known;
 mod record;

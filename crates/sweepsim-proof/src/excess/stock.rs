@@ -1,5 +1,6 @@
 //! What there was before the first cut.
 
+use super::bounding::{Bound, Weights, bounding};
 use super::surface::Points;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
@@ -16,7 +17,7 @@ pub(crate) struct Before {
 /// Something that a stock is within.
 enum Outer {
     /// The points with `⟨n, x⟩ ≤ c` for all of some unit vectors `n`.
-    Planes(Vec<(Vector3<f64>, f64)>),
+    Planes(Vec<Bound>),
     Mesh(DistanceTo),
 }
 
@@ -164,11 +165,65 @@ impl Before {
     pub fn near(&self, mut points: Points, distance: f64) -> Points {
         if let Shape::Block([low, high]) | Shape::Within([low, high]) = &self.shape {
             for k in 0..3 {
-                points = below(points, |point| point[k] - (high[k] + distance));
-                points = below(points, |point| low[k] - distance - point[k]);
+                for side in [1.0, -1.0] {
+                    let end = if side > 0.0 { high[k] } else { low[k] };
+                    if points.len() <= MOST_POINTS {
+                        points = below(points, |point| side * (point[k] - end) - distance);
+                    }
+                }
             }
         }
         points
+    }
+
+    /// For each region that holds the stock, some of its planes, each with a weight: the sum has the region below it,
+    /// and something above, by a distance. `over`: whether that is so, for a direction and a height along it; `normal`:
+    /// the direction that is tried if no plane will do alone. `None` of a mesh, or if it is not so.
+    ///
+    /// If the distance is negative, something may be `allowed` so deep in the stock: that is so of several regions only
+    /// if one direction leads out of all of them that are not farther than that.
+    pub fn planes_below(
+        &self,
+        over: &dyn Fn(&Vector3<f64>, f64) -> bool,
+        normal: &Vector3<f64>,
+        (distance, allowed): (f64, f64),
+    ) -> Option<Vec<Weights>> {
+        let mut way: Option<Vector3<f64>> = None;
+        let mut one = |outer: &Outer| {
+            let Outer::Planes(planes) = outer else { return None };
+            let by = |more: f64| move |(_, (n, c)): &(usize, &Bound)| over(n, c + distance + more);
+            let along = |(_, (n, _)): &(usize, &Bound)| n.dot(normal);
+            let all = || planes.iter().enumerate();
+            if let Some((alone, _)) = all().find(by(2.0 * allowed)) {
+                return Some(Weights::from_slice(&[(alone, 1.0)]));
+            }
+            let alone = { all().filter(by(0.0)) }.max_by(|a, b| along(a).total_cmp(&along(b)));
+            let (n, sum) = match alone {
+                Some((number, (n, _))) => (*n, Weights::from_slice(&[(number, 1.0)])),
+                None => {
+                    let sum = bounding(planes, normal)?;
+                    let of = |(plane, weight): &(usize, f32)| (planes[*plane], f64::from(*weight));
+                    let n: Vector3<f64> = sum.iter().map(of).map(|((n, _), weight)| n * weight).sum();
+                    let top: f64 = sum.iter().map(of).map(|((_, c), weight)| c * weight).sum();
+                    if sum.len() < 2 || !over(&n, top + distance * n.norm()) {
+                        return None;
+                    }
+                    (n, sum)
+                }
+            };
+            (*way.get_or_insert(n) == n).then_some(sum)
+        };
+        self.outer.iter().map(&mut one).collect()
+    }
+
+    /// In how many regions it is.
+    pub fn regions(&self) -> usize {
+        self.outer.len()
+    }
+
+    /// Whether all of these are between planes.
+    pub fn is_between_planes(&self) -> bool {
+        self.outer.iter().all(|outer| matches!(outer, Outer::Planes(_)))
     }
 
     /// Whether it is known to be convex.

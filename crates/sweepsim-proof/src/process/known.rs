@@ -36,6 +36,9 @@ impl Answer for Found {
             to.number(*count);
         });
         to.number(self.zones);
+        to.list(self.trees.iter(), |to, tree| {
+            to.list(tree.iter(), |to, tree| to.bytes(tree))
+        });
     }
 
     fn read(from: &mut Reading) -> Option<Self> {
@@ -46,6 +49,7 @@ impl Answer for Found {
             open: from.list(Reading::open)?,
             open_counts: { from.list(|from| Some((from.number()?, from.number()?)))?.into_iter() }.collect(),
             zones: from.number()?,
+            trees: from.list(|from| Some(from.list(Reading::bytes)?.pop()))?,
         })
     }
 }

@@ -9,6 +9,7 @@
 
 mod history;
 mod known;
+mod record;
 mod remains;
 mod ring;
 mod samples;

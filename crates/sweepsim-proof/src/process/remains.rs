@@ -65,8 +65,8 @@ impl Remains<'_> {
             cut,
             during: None,
         };
-        let (held, _) = self.history.held(&Samples::of_points(&near), moment, self.margin);
-        !held.contains(&false)
+        let (_, holder, _) = self.history.held(&Samples::of_points(&near), moment, self.margin);
+        holder.is_some()
     }
 
     /// Whether all of the hull of some points is still in material when a move of a path has ended, for certain.

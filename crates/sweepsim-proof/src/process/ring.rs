@@ -31,18 +31,34 @@ impl Ring {
     /// No point of it is farther outside of a solid that is at a placement: a bound, exact if both axes are parallel.
     ///
     /// In the half-plane of the solid, its points are no farther from the axis than the centre and the radius, and at
-    /// heights around that of the centre; the [level](Level::at) is convex, and does not fall away from the axis.
-    pub fn level(&self, level: &Level, at: &Placement) -> f64 {
+    /// heights around that of the centre; [how far](Level::signed) a point is outside is convex, and does not fall away
+    /// from the axis. What is outside by more than `most` in any case need not be known better.
+    pub fn level(&self, level: &Level, at: &Placement, most: f64) -> f64 {
         let off = self.centre - at.tip;
         let along = off.dot(&at.axis);
         let across = (off - at.axis * along).norm() + self.radius;
-        let own = if self.radius > 0.0 {
-            let rise = self.radius * self.axis.cross(&at.axis).norm();
-            level.at([across, along - rise]).max(level.at([across, along + rise]))
-        } else {
-            level.at([across, along])
+        let rise = self.radius * self.axis.cross(&at.axis).norm();
+        let heights = [along - rise, along + rise];
+        let of = |level: &dyn Fn([f64; 2]) -> f64| {
+            let own = level([across, heights[0]]);
+            self.thick
+                + match self.radius > 0.0 {
+                    true => own.max(level([across, heights[1]])),
+                    false => own,
+                }
         };
-        own + self.thick
+        let own = of(&|point| level.at(point));
+        if own > most || own <= self.thick {
+            own
+        } else {
+            of(&|point| level.signed(point))
+        }
+    }
+
+    /// How far the nearest of its points is along a direction.
+    pub fn least(&self, n: &Vector3<f64>) -> f64 {
+        let across = (n - self.axis * n.dot(&self.axis)).norm();
+        n.dot(&self.centre) - self.radius * across - self.thick * n.norm()
     }
 
     /// Points whose hull holds it.
@@ -108,12 +124,12 @@ mod tests {
                 tip: Vector3::new(0.1, 0.2, 0.3),
                 axis: Vector3::new(0.05 * f64::from(k % 3), 0.0, 1.0).normalize(),
             };
-            let bound = ring.level(&level, &at);
+            let bound = ring.level(&level, &at, f64::INFINITY);
             let mut corners = SmallVec::new();
             ring.corners(&mut corners);
             let extent = ring.extent();
             for point in around(&ring) {
-                let own = Ring::point(point).level(&level, &at);
+                let own = Ring::point(point).level(&level, &at, f64::INFINITY);
                 assert!(own <= bound + 1e-12, "{own} {bound}");
                 let off = (point - ring.centre).abs();
                 assert!((0..3).all(|k| off[k] <= extent[k] + 1e-12));

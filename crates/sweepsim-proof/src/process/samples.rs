@@ -74,6 +74,11 @@ impl Samples {
         mixed
     }
 
+    /// Whether all rings are points.
+    pub fn are_points(&self) -> bool {
+        self.across > 1
+    }
+
     /// The rings at the first and the last time.
     pub fn ends(&self) -> Option<[&[Ring]; 2]> {
         let (first, last) = self.rings.split_at(self.first);

@@ -12,7 +12,7 @@ pub(super) const TOGETHER: usize = 64;
 
 /// A path of a program, with all that moves along it.
 pub struct Work<'a> {
-    /// What cuts.
+    /// What cuts. It is followed as closely as its reach asks for, or that of the bodies if that is farther.
     pub cutter: Cutter<'a>,
     /// Shanks and holders.
     pub bodies: &'a [Convex],
@@ -59,4 +59,6 @@ pub(super) struct Found {
     /// How many places of each move are open.
     pub open_counts: BTreeMap<usize, usize>,
     pub zones: usize,
+    /// For each solid, the trees of all its zones; nothing if a checker could not follow them.
+    pub trees: Vec<Option<Vec<u8>>>,
 }

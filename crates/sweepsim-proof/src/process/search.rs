@@ -8,6 +8,7 @@ use super::visit::Search;
 use crate::excess::{Before, Course};
 use crate::motion::{Cutter, Run, Stretch};
 use crate::recall::{Answer, QuestionDigest, Recall, Writing};
+use crate::search::Tree;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
@@ -29,12 +30,17 @@ pub struct Touched {
     pub open_count: usize,
     /// Parts that were looked at.
     pub zones: usize,
+    /// How it was proven that nothing comes too near, if it was, and in a way that a checker can follow: of each solid
+    /// of what moves along each path, as far as it was looked at.
+    pub trees: Option<Vec<Tree>>,
 }
 
 /// At first, everything is looked at in so few zones.
 const FIRST_LOOK: usize = 512;
 /// Coordinates of this size are exact to 1.
 const ROUNDING: f64 = 1e-12;
+/// A checker rounds more, but less than so many times as much.
+const CHECKED: f64 = 1e3;
 
 /// Looks for bodies that come too near to the stock as it is at that time, and for rapids through it. `None` if the
 /// monitor cancelled the work.
@@ -83,7 +89,7 @@ pub fn touched_from(
         room,
         history,
         first: cut.iter().map(|cut| &cut.first[..]).collect(),
-        margin: room.distance + 2.0 * room.deviation + rounding,
+        margin: room.distance + 2.0 * room.deviation + CHECKED * rounding,
         bounds: [low, high],
     };
     Ok(scene.search(recall, monitor))
@@ -159,7 +165,11 @@ impl Cut {
 
 /// Some solids along the path of a cutter, without its other courses.
 fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
-    Cutter::new(solids, cutter.path, None)
+    let own = Cutter::new(solids, cutter.path, None);
+    Cutter {
+        reach: own.reach.max(cutter.reach),
+        ..own
+    }
 }
 
 impl Scene<'_> {
@@ -197,9 +207,24 @@ impl Scene<'_> {
             }
             open.retain(|number| !found[*number].open_counts.is_empty());
         }
-        let mut touched = Touched::default();
-        for ((path, _), found) in all.into_iter().zip(found) {
+        let mut touched = Touched {
+            trees: Some(Vec::new()),
+            ..Touched::default()
+        };
+        for ((path, moves), found) in all.into_iter().zip(found) {
             let mut found = found;
+            for (solid, bytes) in std::mem::take(&mut found.trees).into_iter().enumerate() {
+                let moves = moves.clone();
+                touched.trees = touched.trees.zip(bytes).map(|(mut trees, bytes)| {
+                    trees.push(Tree {
+                        path,
+                        moves,
+                        solid,
+                        bytes,
+                    });
+                    trees
+                });
+            }
             // A move that touches is known to.
             let moves = &found.moves;
             found.open.retain(|open| !moves.contains_key(&open.first.0));
@@ -211,6 +236,9 @@ impl Scene<'_> {
             touched.open_count += found.open_counts.values().sum::<usize>();
             touched.zones += found.zones;
         }
+        touched.trees = touched
+            .trees
+            .filter(|_| touched.moves.is_empty() && touched.open_count == 0);
         Some(touched)
     }
 
@@ -264,12 +292,14 @@ impl Scene<'_> {
                 true
             });
             near.sort_unstable();
-            let count = near.len();
-            for (k, number) in near.into_iter().enumerate() {
-                // What some have not needed is for the others.
-                let most = found.zones + most.saturating_sub(found.zones) / (count - k);
-                let stretch = &stretches[number];
+            let mut left = near.len();
+            let mut trees = Some(Vec::new());
+            for (number, stretch) in stretches.iter().enumerate() {
                 let is_rapid = (work.is_rapid)(stretch.number);
+                let is_near = near.binary_search(&number).is_ok();
+                // What some have not needed is for the others.
+                let most = found.zones + most.saturating_sub(found.zones) / left.max(1);
+                left -= usize::from(is_near);
                 if self.movers == Movers::Rapids && !is_rapid {
                     continue;
                 }
@@ -295,8 +325,16 @@ impl Scene<'_> {
                     cut: if is_rapid { cut } else { cut + of_move.count() },
                     is_rapid,
                 };
-                search.look(starts, most, &mut found);
+                let own = match is_near {
+                    true => search.look(starts, most, &mut found),
+                    false => search.far(starts),
+                };
+                trees = trees.zip(own).map(|(mut trees, own)| {
+                    trees.extend(own);
+                    trees
+                });
             }
+            found.trees.push(trees);
         }
         found
     }

@@ -1,6 +1,7 @@
 //! The search on a stretch of a path, with the zones first that may be deepest in material.
 
 use super::history::Moment;
+use super::record::{Bytes, Record, number};
 use super::samples::{Samples, Turned};
 use super::scene::{Found, Scene};
 use super::zone::Zone;
@@ -24,6 +25,8 @@ struct Pending {
     score: f64,
     order: usize,
     zone: Zone,
+    /// Its number in the record.
+    node: usize,
 }
 
 impl PartialEq for Pending {
@@ -48,9 +51,10 @@ impl Ord for Pending {
 
 /// What came of a zone.
 enum Visit {
-    Free,
-    /// Into smaller ones; none is deeper in material than about this.
-    Divided(Vec<Zone>, f64),
+    /// Why, for a record.
+    Free(Option<Bytes>),
+    /// Into smaller ones, and how; none is deeper in material than about this.
+    Divided(u8, Vec<Zone>, f64),
     Touching(Witness),
     Open,
 }
@@ -67,28 +71,40 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    pub fn look(&self, starts: bool, most: usize, found: &mut Found) {
+    /// Looks at all zones of a stretch; and leaves their trees, if all are done in a way that a checker can follow.
+    pub fn look(&self, starts: bool, most: usize, found: &mut Found) -> Option<Vec<u8>> {
         let mut open = BinaryHeap::new();
         let mut order = 0;
-        let mut push = |open: &mut BinaryHeap<Pending>, score: f64, zone: Zone| {
-            open.push(Pending { score, order, zone });
+        let mut push = |open: &mut BinaryHeap<Pending>, score: f64, node: usize, zone: Zone| {
+            open.push(Pending {
+                score,
+                order,
+                zone,
+                node,
+            });
             order += 1;
         };
-        push(&mut open, 0.0, Zone::whole([0.0, 1.0], false));
+        let mut record = Record::new(1 + usize::from(starts));
+        push(&mut open, 0.0, usize::from(starts), Zone::whole(self.solid, false));
         if starts {
-            push(&mut open, 0.0, Zone::whole([0.0, 0.0], true));
+            push(&mut open, 0.0, 0, Zone::whole(self.solid, true));
         }
-        while let Some(Pending { mut zone, .. }) = open.pop() {
+        while let Some(Pending { zone, node, .. }) = open.pop() {
             if found.zones >= most {
                 self.leave(&zone, found);
                 open.iter().for_each(|pending| self.leave(&pending.zone, found));
-                return;
+                return None;
             }
             found.zones += 1;
-            zone.top = self.top(zone.times);
+            let (zone, node) = self.below_top(zone, node, &mut record);
             match self.visit(&zone) {
-                Visit::Free => {}
-                Visit::Divided(smaller, score) => smaller.into_iter().for_each(|zone| push(&mut open, score, zone)),
+                Visit::Free(why) => record.done(node, why),
+                Visit::Divided(how, smaller, score) => {
+                    let first = record.divided(node, Bytes::from_slice(&[how]), smaller.len());
+                    for (part, zone) in smaller.into_iter().enumerate() {
+                        push(&mut open, score, first + part, zone);
+                    }
+                }
                 Visit::Open => self.leave(&zone, found),
                 Visit::Touching(witness) => {
                     let known = found.moves.entry(witness.number).or_insert_with(|| witness.clone());
@@ -96,10 +112,73 @@ impl Search<'_> {
                         *known = witness;
                     }
                     // One place is enough for a move; its other zones would be many.
-                    return;
+                    return None;
                 }
             }
         }
+        record.trees()
+    }
+
+    /// The trees of a stretch that is far from the stock.
+    pub fn far(&self, starts: bool) -> Option<Vec<u8>> {
+        let mut record = Record::new(1 + usize::from(starts));
+        for number in 0..1 + usize::from(starts) {
+            let zone = Zone::whole(self.solid, number < usize::from(starts));
+            let samples = zone.samples(&self.turned);
+            record.done(
+                number,
+                self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone)),
+            );
+        }
+        record.trees()
+    }
+
+    /// The part of a zone that may come near to the stock, and its number; what is higher is beside it.
+    fn below_top(&self, zone: Zone, node: usize, record: &mut Record) -> (Zone, usize) {
+        let Some((how, [below, above])) = zone.cut(self.top(zone.times)) else {
+            return (zone, node);
+        };
+        let samples = above.samples(&self.turned);
+        let why = self.beside(&samples, &self.away(&samples, Vector3::z()), self.need(&zone));
+        // Where a path bends, a checker may not see it yet.
+        if why.is_none() && self.scene.history.before.is_between_planes() {
+            return (zone, node);
+        }
+        let first = record.divided(node, how, 2);
+        record.done(first + 1, why);
+        (below, first)
+    }
+
+    /// How far a zone must be from material, where it is at its first and its last time.
+    fn need(&self, zone: &Zone) -> f64 {
+        let [from, to] = zone.times;
+        self.scene.margin + self.turned.stretch.bend(self.solid.reach(), to - from)
+    }
+
+    /// The direction from the stock to a zone; or another, if it is not outside.
+    fn away(&self, samples: &Samples, otherwise: Vector3<f64>) -> Vector3<f64> {
+        let [low, high] = &self.scene.bounds;
+        let centre = samples.middle();
+        let off = centre - centre.sup(low).inf(high);
+        off.try_normalize(0.0).unwrap_or(otherwise)
+    }
+
+    /// Why a zone is beside the stock, as a checker sees it.
+    fn beside(&self, samples: &Samples, normal: &Vector3<f64>, need: f64) -> Option<Bytes> {
+        let over = |n: &Vector3<f64>, top: f64| samples.rings.iter().all(|ring| ring.least(n) > top);
+        let mut bytes = Bytes::from_slice(&[1]);
+        let allowed = (-self.scene.room.distance).max(0.0);
+        let before = &self.scene.history.before;
+        for planes in before.planes_below(&over, normal, (need, allowed))? {
+            bytes.push(u8::try_from(planes.len()).ok()?);
+            for (plane, weight) in &planes {
+                number(&mut bytes, *plane);
+                if planes.len() > 1 {
+                    bytes.extend(weight.to_le_bytes());
+                }
+            }
+        }
+        Some(bytes)
     }
 
     fn is_worse(&self, a: &Witness, b: &Witness) -> bool {
@@ -147,33 +226,40 @@ impl Search<'_> {
         let [from, to] = zone.times;
         let bend = self.turned.stretch.bend(self.solid.reach(), to - from);
         let need = scene.margin + bend;
-        let mut samples = zone.samples(self.solid, &self.turned);
-        if samples.rings.is_empty() || !self.is_rapid && self.is_in_cutter(zone) {
-            return Visit::Free;
+        let mut samples = zone.samples(&self.turned);
+        if let Some(solid) = self.is_in_cutter(zone) {
+            let mut bytes = Bytes::from_slice(&[5]);
+            number(&mut bytes, solid);
+            return Visit::Free(Some(bytes));
         }
         let corners = samples.corners();
         let middle = zone.middle(&self.turned);
         let normal = middle.map_or_else(Vector3::z, |(_, _, normal)| normal);
         let centre = samples.middle();
-        let [low, high] = &scene.bounds;
-        let normal = (centre - centre.sup(low).inf(high))
-            .try_normalize(0.0)
-            .unwrap_or(normal);
-        if scene.history.before.is_beside(&corners, &normal, need) {
-            return Visit::Free;
+        let normal = self.away(&samples, normal);
+        let before = &scene.history.before;
+        if before.is_beside(&corners, &normal, need) {
+            let why = self.beside(&samples, &normal, need);
+            // Beside each of several regions, but between them, is not beside all.
+            if why.is_some() || !(before.is_between_planes() && before.regions() > 1) {
+                return Visit::Free(why);
+            }
         }
         let mut is_whole = true;
-        if zone.angles.is_some() {
+        if samples.are_points() {
             let count = corners.len();
-            let near = scene.history.before.near(corners, need);
+            let near = before.near(corners, need);
             is_whole = near.len() == count;
+            if near.is_empty() {
+                return Visit::Free(Some(Bytes::from_slice(&[2])));
+            }
             if !is_whole {
                 samples = Samples::of_points(&near);
             }
         }
-        let (held, nearest) = scene.history.held(&samples, self.moment(from), need);
-        if !held.contains(&false) {
-            return Visit::Free;
+        let (held, holder, nearest) = scene.history.held(&samples, self.moment(from), need);
+        if let Some(holder) = holder {
+            return Visit::Free(Some(holder.bytes()));
         }
         if let Some(witness) = self.touches(zone) {
             return Visit::Touching(witness);
@@ -181,21 +267,26 @@ impl Search<'_> {
         let mixed = if is_whole { samples.mixed(&held) } else { [false; 3] };
         let distance = scene.room.distance.abs();
         let wanted = (FINEST * distance, bend > BEND * distance);
-        let smaller = zone.divided(self.solid, &self.turned, mixed, wanted);
+        let (how, smaller) = zone.divided(self.solid, &self.turned, mixed, wanted);
         if smaller.is_empty() {
             return Visit::Open;
         }
+        let [low, high] = &scene.bounds;
         let inside = (centre - low).inf(&(high - centre)).min();
-        Visit::Divided(smaller, inside.min(nearest) + samples.extent(&centre))
+        Visit::Divided(how, smaller, inside.min(nearest) + samples.extent(&centre))
     }
 
-    /// Whether a zone is in the cutter that it belongs to, which cuts at that time.
-    fn is_in_cutter(&self, zone: &Zone) -> bool {
-        let solids = self.scene.history.courses[self.path].solids.iter();
-        let profile = zone.profile(self.solid);
-        solids.filter(|solid| solid.convex.is_exact()).any(|solid| {
-            let is_inside = |(place, thick): &([f64; 2], f64)| solid.level.at(*place) + thick <= -self.scene.margin;
-            profile.iter().all(is_inside)
+    /// In which solid of the cutter that it belongs to a zone is, which cuts at that time. That is so all around or not
+    /// at all.
+    fn is_in_cutter(&self, zone: &Zone) -> Option<usize> {
+        if self.is_rapid || zone.angles.is_some() {
+            return None;
+        }
+        let solids = &self.scene.history.courses[self.path].solids;
+        let profile = zone.profile();
+        solids.iter().position(|solid| {
+            let is_inside = |(place, thick): &([f64; 2], f64)| solid.level.signed(*place) + thick <= -self.scene.margin;
+            solid.convex.is_exact() && profile.iter().all(is_inside)
         })
     }
 
@@ -246,7 +337,7 @@ impl Search<'_> {
         if found.open.len() >= MOST_OPEN {
             return;
         }
-        let (low, high) = zone.samples(self.solid, &self.turned).bounds();
+        let (low, high) = zone.samples(&self.turned).bounds();
         let [first, last] = zone.times.map(|time| (stretch.number, stretch.time(time)));
         found.open.push(OpenBox {
             first,

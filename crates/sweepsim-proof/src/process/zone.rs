@@ -1,88 +1,110 @@
 //! Zones: parts of the surface of a moving solid of revolution, and times.
 
+use super::record::Bytes;
 use super::ring::Ring;
 use super::samples::{Samples, Turned};
-use crate::tool::Convex;
+use crate::tool::{Convex, Piece};
 use nalgebra::Vector3;
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// An arc of an outline: its centre, its radius, and the angles of its ends as seen from there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Arc {
-    centre: [f64; 2],
-    radius: f64,
-    angles: [f64; 2],
-}
-
-/// A stretch of the outline of a solid, `(ρ, ζ)`.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Outline {
-    Whole,
-    Line([[f64; 2]; 2]),
-    Arc(Arc),
-}
-
 /// What of a solid is looked at, and when.
 #[derive(Clone, Debug)]
 pub(super) struct Zone {
-    pub outline: Outline,
+    /// Parts of its outline.
+    pub pieces: SmallVec<[Piece; 1]>,
+    /// Before they are looked at one by one: arcs count as the balls that they are part of.
+    pub is_whole: bool,
     /// Around the axis, from [an arbitrary direction](Turned); all around if none.
     pub angles: Option<[f64; 2]>,
     /// With all that is between it and the axis.
     pub is_filled: bool,
     pub times: [f64; 2],
-    /// What is higher above the tip is left out.
-    pub top: f64,
 }
 
 /// A zone of which one end is held and the other is not is divided between them, unless it is so much longer otherwise.
 const MIXED: f64 = 16.0;
 /// Wider sectors are taken as the whole ring.
 const WIDEST: f64 = 2.0;
+/// How zones are divided, in a [record](super::record).
+const TIME: u8 = 10;
+const PIECES: u8 = 11;
+const HEIGHT: u8 = 12;
+const ANGLES: u8 = 13;
+const CUT: u8 = 14;
 
 impl Zone {
-    /// All of a solid between two times.
-    pub fn whole(times: [f64; 2], is_filled: bool) -> Self {
+    /// All of the surface of a solid all along a stretch, or all of the solid where it begins.
+    pub fn whole(solid: &Convex, is_filled: bool) -> Self {
         Self {
-            outline: Outline::Whole,
+            pieces: solid.pieces().iter().cloned().collect(),
+            is_whole: true,
             angles: None,
             is_filled,
-            times,
-            top: f64::INFINITY,
+            times: [0.0, if is_filled { 0.0 } else { 1.0 }],
         }
     }
 
     /// Circles of the outline, each with the radius of a ball around its points, whose hull with the axis holds it.
-    pub fn profile(&self, solid: &Convex) -> SmallVec<[([f64; 2], f64); 8]> {
-        match &self.outline {
-            Outline::Whole => {
-                let lines = edges(solid).filter_map(|line| self.below(line));
-                let corners = lines.flatten().map(|corner| (corner, 0.0));
-                let arcs = solid.arcs().map(|(centre, radius, _)| (centre, radius));
-                corners
-                    .chain(arcs.filter(|(centre, radius)| centre[1] - radius < self.top))
-                    .collect()
-            }
-            Outline::Line(ends) => self.below(*ends).into_iter().flatten().map(|end| (end, 0.0)).collect(),
-            // Both ends, and where their tangents meet.
-            Outline::Arc(arc) => {
-                let half = 0.5 * (arc.angles[1] - arc.angles[0]);
-                let top = arc.at(0.5, arc.radius / half.cos());
-                smallvec![
-                    (arc.at(0.0, arc.radius), 0.0),
-                    (top, 0.0),
-                    (arc.at(1.0, arc.radius), 0.0)
-                ]
-            }
+    pub fn profile(&self) -> SmallVec<[([f64; 2], f64); 8]> {
+        let mut all = SmallVec::new();
+        for piece in &self.pieces {
+            let own: SmallVec<[([f64; 2], f64); 8]> = match piece {
+                Piece::Line(ends) => ends.iter().map(|end| (*end, 0.0)).collect(),
+                Piece::Points(points) => points.iter().map(|point| (*point, 0.0)).collect(),
+                // Its ends are in the ball, but count for where the middle of the zone is.
+                Piece::Arc { centre, radius, angles } if self.is_whole => {
+                    let [first, last] = angles.map(|angle| (at(*centre, angle, *radius), 0.0));
+                    smallvec![first, (*centre, *radius), last]
+                }
+                // Both ends, and where their tangents meet.
+                Piece::Arc { centre, radius, angles } => {
+                    let half = 0.5 * (angles[1] - angles[0]);
+                    smallvec![
+                        (at(*centre, angles[0], *radius), 0.0),
+                        (at(*centre, angles[0] + half, radius / half.cos()), 0.0),
+                        (at(*centre, angles[1], *radius), 0.0)
+                    ]
+                }
+            };
+            all.extend(own);
         }
+        // Where lines meet.
+        if self.is_whole {
+            all.dedup();
+        }
+        all
+    }
+
+    /// Below a height that a record can name, and above it, if there is something; and how a record says so.
+    pub fn cut(&self, height: f64) -> Option<(Bytes, [Self; 2])> {
+        let height = (height as f32).next_up();
+        if !height.is_finite() {
+            return None;
+        }
+        let own = f64::from(height);
+        let reaches = |side: f64| {
+            self.profile()
+                .iter()
+                .any(|(p, thick)| side * (p[1] - own) + thick > 0.0)
+        };
+        let part = |side: f64| Self {
+            pieces: { self.pieces.iter() }
+                .filter_map(|piece| beyond(piece, own, side))
+                .collect(),
+            ..self.clone()
+        };
+        (reaches(-1.0) && reaches(1.0)).then(|| {
+            let bytes = [CUT].into_iter().chain(height.to_le_bytes()).collect();
+            (bytes, [part(-1.0), part(1.0)])
+        })
     }
 
     /// Rings whose hull holds the zone at its first and last time; and so at all times between them, but for the
     /// [bend](Stretch::bend).
-    pub fn samples(&self, solid: &Convex, turned: &Turned) -> Samples {
+    pub fn samples(&self, turned: &Turned) -> Samples {
         let mut samples = Samples::default();
-        let profile = self.profile(solid);
+        let profile = self.profile();
         let [from, to] = self.times;
         let spin = turned.spin(to - from);
         let angles = self.angles.map(|[a, b]| [a - spin, b + spin]);
@@ -130,17 +152,25 @@ impl Zone {
 
     /// A point in the middle of it, and the normal there; none of a whole solid.
     pub fn middle(&self, turned: &Turned) -> Option<(f64, Vector3<f64>, Vector3<f64>)> {
-        let (place, normal) = match &self.outline {
-            Outline::Whole => return None,
-            Outline::Line([a, b]) => {
+        let (place, normal) = match &self.pieces[..] {
+            [Piece::Arc { centre, radius, angles }] if !self.is_whole => {
+                let middle = 0.5 * (angles[0] + angles[1]);
+                (at(*centre, middle, *radius), at([0.0; 2], middle, 1.0))
+            }
+            [piece] if !self.is_whole => {
+                let points = match piece {
+                    Piece::Line(ends) => &ends[..],
+                    Piece::Points(points) => points,
+                    Piece::Arc { .. } => return None,
+                };
+                let ([.., b], [a, ..]) = (points, points) else {
+                    return None;
+                };
                 let way = [b[0] - a[0], b[1] - a[1]];
                 let length = way[0].hypot(way[1]).max(f64::MIN_POSITIVE);
                 ([0, 1].map(|k| 0.5 * (a[k] + b[k])), [way[1] / length, -way[0] / length])
             }
-            Outline::Arc(arc) => {
-                let place = arc.at(0.5, arc.radius);
-                (place, [0, 1].map(|k| (place[k] - arc.centre[k]) / arc.radius))
-            }
+            _ => return None,
         };
         let angle = self.angles.map_or(0.0, |[a, b]| 0.5 * (a + b));
         let time = 0.5 * (self.times[0] + self.times[1]);
@@ -150,18 +180,29 @@ impl Zone {
         Some((time, point, beyond - point))
     }
 
-    /// Smaller zones of it, or nothing if it is smaller than `least`.
+    /// Smaller zones of it, or nothing if it is smaller than `least`; and how a record says so.
     ///
     /// `mixed`: whether of its [samples](Samples::mixed) some are held and others are not, along each dimension: it is
     /// divided there first. `bends`: whether it must be shorter.
-    pub fn divided(&self, solid: &Convex, turned: &Turned, mixed: [bool; 3], (least, bends): (f64, bool)) -> Vec<Self> {
+    pub fn divided(
+        &self,
+        solid: &Convex,
+        turned: &Turned,
+        mixed: [bool; 3],
+        (least, bends): (f64, bool),
+    ) -> (u8, Vec<Self>) {
         let travel = turned.stretch.travel(solid.reach(), self.times[1] - self.times[0]);
-        if matches!(self.outline, Outline::Whole) {
+        if self.is_whole {
             let far = if mixed[0] { 0.25 } else { 2.0 };
             if travel > least && (bends || travel > far * solid.reach()) {
-                return self.halves_of_time();
+                return (TIME, self.halves_of_time());
             }
-            return self.stretches(solid);
+            let one = |piece: &Piece| Self {
+                pieces: smallvec![piece.clone()],
+                is_whole: false,
+                ..self.clone()
+            };
+            return (PIECES, self.pieces.iter().map(one).collect());
         }
         let (height, width) = self.size();
         let width = match self.angles {
@@ -172,7 +213,7 @@ impl Zone {
         };
         let lengths = [travel, height, width];
         if lengths.iter().all(|length| *length <= least) {
-            return Vec::new();
+            return (0, Vec::new());
         }
         let weight = |k: usize| match k {
             0 if bends && travel > 0.0 => f64::INFINITY,
@@ -180,23 +221,9 @@ impl Zone {
             _ => lengths[k],
         };
         match (0..3).max_by(|a, b| weight(*a).total_cmp(&weight(*b))) {
-            Some(0) => self.halves_of_time(),
-            Some(1) => self.halves_of_height(),
-            _ => self.sectors(),
-        }
-    }
-
-    /// What of a line is below the top.
-    fn below(&self, [a, b]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-        let at_top = |from: [f64; 2], to: [f64; 2]| {
-            let share = (self.top - from[1]) / (to[1] - from[1]);
-            [from[0] + (to[0] - from[0]) * share, self.top]
-        };
-        match [a[1] > self.top, b[1] > self.top] {
-            [true, true] => None,
-            [true, false] => Some([at_top(b, a), b]),
-            [false, true] => Some([a, at_top(a, b)]),
-            [false, false] => Some([a, b]),
+            Some(0) => (TIME, self.halves_of_time()),
+            Some(1) => (HEIGHT, self.halves_of_height()),
+            _ => (ANGLES, self.sectors()),
         }
     }
 
@@ -207,49 +234,33 @@ impl Zone {
         vec![half([from, middle]), half([middle, to])]
     }
 
-    fn with(&self, outline: Outline) -> Self {
-        Self {
-            outline,
-            ..self.clone()
-        }
-    }
-
-    /// The lines and arcs of the outline, from the axis to the axis.
-    fn stretches(&self, solid: &Convex) -> Vec<Self> {
-        let lines = edges(solid).filter_map(|line| self.below(line));
-        let lines = lines.map(|line| self.with(Outline::Line(line)));
-        let arcs = solid.arcs().filter(|(centre, radius, _)| centre[1] - radius < self.top);
-        let arcs = arcs.map(|(centre, radius, normals)| {
-            let [from, to] = normals.map(|n| n[1].atan2(n[0]));
-            let to = from + (to - from).rem_euclid(TAU);
-            self.with(Outline::Arc(Arc {
-                centre,
-                radius,
-                angles: [from, to.min(from + FRAC_PI_2)],
-            }))
-        });
-        // Tangents of a quarter meet far outside.
-        let arcs = arcs.flat_map(|arc| arc.halves_of_height());
-        lines.chain(arcs).collect()
-    }
-
     fn halves_of_height(&self) -> Vec<Self> {
-        match &self.outline {
-            Outline::Whole => Vec::new(),
-            Outline::Line([a, b]) => {
+        let halves = match &self.pieces[..] {
+            [Piece::Line([a, b])] => {
                 let middle = [0, 1].map(|k| 0.5 * (a[k] + b[k]));
-                vec![
-                    self.with(Outline::Line([*a, middle])),
-                    self.with(Outline::Line([middle, *b])),
-                ]
+                [Piece::Line([*a, middle]), Piece::Line([middle, *b])]
             }
-            Outline::Arc(arc) => {
-                let [from, to] = arc.angles;
+            [
+                Piece::Arc {
+                    centre,
+                    radius,
+                    angles: [from, to],
+                },
+            ] => {
                 let middle = 0.5 * (from + to);
-                let zone = |angles| self.with(Outline::Arc(Arc { angles, ..*arc }));
-                vec![zone([from, middle]), zone([middle, to])]
+                [[*from, middle], [middle, *to]].map(|angles| Piece::Arc {
+                    centre: *centre,
+                    radius: *radius,
+                    angles,
+                })
             }
-        }
+            _ => return Vec::new(),
+        };
+        let half = |piece| Self {
+            pieces: smallvec![piece],
+            ..self.clone()
+        };
+        halves.map(half).to_vec()
     }
 
     fn sectors(&self) -> Vec<Self> {
@@ -265,30 +276,43 @@ impl Zone {
         }
     }
 
-    /// How long it is along the outline, and around the axis.
+    /// How long it is along the outline, as far as it can be divided there, and around the axis.
     fn size(&self) -> (f64, f64) {
-        let (height, radius) = match &self.outline {
-            Outline::Whole => (0.0, 0.0),
-            Outline::Line([a, b]) => ((b[0] - a[0]).hypot(b[1] - a[1]), a[0].max(b[0])),
-            Outline::Arc(arc) => (arc.radius * (arc.angles[1] - arc.angles[0]), arc.centre[0] + arc.radius),
+        let (height, radius) = match &self.pieces[..] {
+            [Piece::Line([a, b])] => ((b[0] - a[0]).hypot(b[1] - a[1]), a[0].max(b[0])),
+            [Piece::Arc { centre, radius, angles }] => (radius * (angles[1] - angles[0]), centre[0] + radius),
+            _ => (
+                0.0,
+                self.profile().iter().map(|(place, _)| place[0]).fold(0.0, f64::max),
+            ),
         };
         (height, radius * self.angles.map_or(TAU, |[a, b]| b - a))
     }
 }
 
-/// The sides of a solid, but for the axis.
-fn edges(solid: &Convex) -> impl Iterator<Item = [[f64; 2]; 2]> {
-    let corners = solid.corners();
-    let next = corners.iter().cycle().skip(1);
-    let sides = corners.iter().zip(next).filter(|(a, b)| a[0] > 0.0 || b[0] > 0.0);
-    sides.map(|(a, b)| [*a, *b])
+/// At an angle around a centre, and a distance from it.
+fn at(centre: [f64; 2], angle: f64, distance: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [centre[0] + distance * cos, centre[1] + distance * sin]
 }
 
-impl Arc {
-    /// At a share of its angle, and a distance from the centre.
-    fn at(&self, share: f64, distance: f64) -> [f64; 2] {
-        let [from, to] = self.angles;
-        let (sin, cos) = (from + (to - from) * share).sin_cos();
-        [self.centre[0] + distance * cos, self.centre[1] + distance * sin]
+/// What of a piece is above a height, or below it for a `side` of −1; of what is no line, all if some of it may be.
+fn beyond(piece: &Piece, height: f64, side: f64) -> Option<Piece> {
+    let over = |zeta: f64| side * (zeta - height);
+    match piece {
+        Piece::Line([a, b]) => {
+            let cut = || {
+                let share = (height - a[1]) / (b[1] - a[1]);
+                [a[0] + (b[0] - a[0]) * share, height]
+            };
+            match [a, b].map(|p| over(p[1]) >= 0.0) {
+                [true, true] => Some(piece.clone()),
+                [true, false] => Some(Piece::Line([*a, cut()])),
+                [false, true] => Some(Piece::Line([cut(), *b])),
+                [false, false] => None,
+            }
+        }
+        Piece::Arc { centre, radius, .. } => (over(centre[1]) + radius >= 0.0).then(|| piece.clone()),
+        Piece::Points(points) => points.iter().any(|p| over(p[1]) >= 0.0).then(|| piece.clone()),
     }
 }

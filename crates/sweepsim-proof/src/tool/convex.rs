@@ -16,6 +16,23 @@ pub struct Convex {
     pub(super) loose: bool,
     /// It is the hull of so many curves of the outline, or of one of so many parts of one.
     pub(super) cut: [usize; 2],
+    /// Its part of the outline, from the tip to the top.
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// A part of an outline.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Piece {
+    Line([[f64; 2]; 2]),
+    /// A convex arc of at most 90°.
+    Arc {
+        centre: [f64; 2],
+        radius: f64,
+        /// Of its ends, as seen from the centre.
+        angles: [f64; 2],
+    },
+    /// Something in the hull of these, turned about the axis.
+    Points(Vec<[f64; 2]>),
 }
 
 /// An arc with the material on the side of its centre, of at most 90°.
@@ -57,6 +74,11 @@ impl Convex {
     /// Its arcs, none longer than 90°: centre, radius, and the unit normals at both ends, counter-clockwise.
     pub fn arcs(&self) -> impl Iterator<Item = ([f64; 2], f64, [[f64; 2]; 2])> {
         self.arcs.iter().map(|arc| (arc.centre, arc.radius, arc.normals))
+    }
+
+    /// Its part of the tool's outline. All of them together are the surface of what is covered, or hold it.
+    pub(crate) fn pieces(&self) -> &[Piece] {
+        &self.pieces
     }
 
     /// Of how many curves of its tool's outline it is the hull, and 1; or 1, and of one of how many parts of a curve.

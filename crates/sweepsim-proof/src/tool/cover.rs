@@ -5,7 +5,7 @@
 //! nearer to the axis at the heights of the stretch, and every point of the tool is. For a tool whose outline rises all
 //! the way and has no concave curves, the hulls are the tool.
 
-use super::convex::{Convex, ConvexArc};
+use super::convex::{Convex, ConvexArc, Piece};
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim_motion::{MeridianCurve, MeridianShape, Tool};
 
@@ -39,7 +39,8 @@ pub fn cover(tool: &Tool, tolerance: f64) -> Vec<Convex> {
             let count = all.len();
             for points in all {
                 stretch = Stretch::new(points[0]);
-                stretch.convex.corners.extend(points);
+                stretch.convex.corners.extend(&points);
+                stretch.convex.pieces = vec![Piece::Points(points)];
                 (stretch.convex.exact, stretch.convex.cut) = (false, [1, count]);
                 cover.extend(stretch.close());
             }
@@ -89,6 +90,7 @@ impl Stretch {
             exact: true,
             loose: false,
             cut: [0, 1],
+            pieces: Vec::new(),
         };
         Self { convex }
     }
@@ -97,29 +99,31 @@ impl Stretch {
         let convex = &mut self.convex;
         convex.corners.push(curve.to);
         convex.cut[0] += 1;
-        if let MeridianShape::Arc {
+        let MeridianShape::Arc {
             centre,
             radius,
             start,
             sweep,
         } = curve.shape
-        {
-            let count = (sweep / FRAC_PI_2).ceil().max(1.0);
-            for part in 0..count as usize {
-                let normals = [part, part + 1].map(|k| {
-                    let angle = start + sweep * k as f64 / count;
-                    [angle.cos(), angle.sin()]
-                });
-                convex.arcs.push(ConvexArc {
-                    centre,
-                    radius,
-                    normals,
-                });
-                let join = start + sweep * (part + 1) as f64 / count;
-                convex
-                    .corners
-                    .push([centre[0] + radius * join.cos(), centre[1] + radius * join.sin()]);
-            }
+        else {
+            convex.pieces.push(Piece::Line([curve.from, curve.to]));
+            return;
+        };
+        // An arc is not divided for the sake of rounding.
+        let count = (sweep / FRAC_PI_2 - SAME).ceil().max(1.0);
+        for part in 0..count as usize {
+            let angles = [part, part + 1].map(|k| start + sweep * k as f64 / count);
+            convex.pieces.push(Piece::Arc { centre, radius, angles });
+            let normals = angles.map(|angle| [angle.cos(), angle.sin()]);
+            convex.arcs.push(ConvexArc {
+                centre,
+                radius,
+                normals,
+            });
+            let join = start + sweep * (part + 1) as f64 / count;
+            convex
+                .corners
+                .push([centre[0] + radius * join.cos(), centre[1] + radius * join.sin()]);
         }
     }
 
@@ -254,6 +258,7 @@ fn around_patches(tool: &Tool) -> Convex {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), corner| {
             (low.min(corner[1]), high.max(corner[1]))
         });
+    let pieces = vec![Piece::Points(corners.clone())];
     corners.extend([[0.0, low], [0.0, high]]);
     Convex {
         corners: extreme(corners),
@@ -261,5 +266,6 @@ fn around_patches(tool: &Tool) -> Convex {
         exact: false,
         loose: true,
         cut: [1, 1],
+        pieces,
     }
 }

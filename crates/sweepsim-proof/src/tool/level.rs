@@ -48,6 +48,17 @@ impl Level {
         level
     }
 
+    /// How far `(ρ, ζ)` is outside of the solid, or minus how far it is inside. It is convex, and does not fall with
+    /// `ρ`.
+    pub fn signed(&self, point: [f64; 2]) -> f64 {
+        let level = self.at(point);
+        if level > 0.0 {
+            level.max(self.distance(point))
+        } else {
+            level
+        }
+    }
+
     /// How far `(ρ, ζ)` is from the solid: 0 inside.
     pub fn distance(&self, point: [f64; 2]) -> f64 {
         if self.at(point) <= 0.0 {

@@ -35,9 +35,10 @@ pub(crate) fn scene(
     Scene {
         solids: vec![soup.triangles.clone()],
         outlines: vec![outline(tool)],
-        paths: vec![motions(cutter, limits.deviation)],
+        paths: vec![motions(cutter, limits.deviation, &|_| false)],
         deviation: limits.deviation,
         stock: stock.and_then(|stock| regions(stock, 6.0 * margin)).unwrap_or_default(),
+        skin: 6.0 * margin,
         margin,
         questions: vec![Question {
             about: "a test".into(),
@@ -45,6 +46,7 @@ pub(crate) fn scene(
             limit,
             solid: 0,
             movers: vec![(0, 0)],
+            cutters: Vec::new(),
         }],
     }
 }

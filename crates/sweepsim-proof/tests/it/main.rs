@@ -2,6 +2,7 @@
 
 mod apart;
 mod certificates;
+mod clear;
 mod forged;
 mod process;
 mod recall;

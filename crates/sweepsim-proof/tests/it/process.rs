@@ -1,20 +1,21 @@
 //! Shanks and rapids beside a stock while it is cut.
 
+use crate::clear::certified;
 use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::Stock;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
-use sweepsim_proof::{Convex, Cutter, Movers, Room, Touched, Work, cover, touched};
+use sweepsim_proof::{Cutter, Movers, Room, Touched, Work, cover, touched};
 use sweepsim_props::test_runner::{Config, RngSeed, TestRunner};
 use sweepsim_props::*;
 
-const ROOM: Room = Room {
+pub(crate) const ROOM: Room = Room {
     distance: -1e-3,
     deviation: 1e-6,
     zones: 200_000,
 };
 
-fn block() -> Stock {
+pub(crate) fn block() -> Stock {
     Stock::Block {
         min: [-30.0, -20.0, -20.0],
         max: [30.0, 20.0, 0.0],
@@ -22,29 +23,28 @@ fn block() -> Stock {
 }
 
 /// A cylinder about the axis between two heights above the tip.
-fn cylinder(radius: f64, [low, high]: [f64; 2]) -> Vec<Convex> {
+fn cylinder(radius: f64, [low, high]: [f64; 2]) -> Tool {
     let line = |rho, zeta| ProfileSegment::Line { to: [rho, zeta] };
     let outline = vec![line(radius, low), line(radius, high), line(0.0, high)];
-    let outline = Profile::new([0.0, low], outline).expect("an outline");
-    cover(&Tool::from_profile(outline), 1e-4)
+    Tool::from_profile(Profile::new([0.0, low], outline).expect("an outline"))
 }
 
-struct Scene {
-    path: Path,
-    cutter: Vec<Convex>,
-    bodies: Vec<Convex>,
+pub(crate) struct Scene {
+    pub path: Path,
+    pub cutter: Tool,
+    pub body: Tool,
     /// The moves that are rapids.
-    rapids: Vec<usize>,
+    pub rapids: Vec<usize>,
 }
 
 impl Scene {
     /// A flat end mill of 10 mm that cuts over `flute`, with a shank above.
-    fn new(tips: &[[f64; 3]], flute: f64, shank: f64) -> Self {
+    pub fn new(tips: &[[f64; 3]], flute: f64, shank: f64) -> Self {
         let poses = tips.iter().map(|tip| Pose::new(*tip, [0.0, 0.0, 1.0]).expect("a pose"));
         Self {
             path: Path::new(poses.collect()).expect("a path"),
-            cutter: cover(&Tool::flat(5.0, flute).expect("a tool"), 1e-4),
-            bodies: cylinder(shank, [flute, 60.0]),
+            cutter: Tool::flat(5.0, flute).expect("a tool"),
+            body: cylinder(shank, [flute, 60.0]),
             rapids: Vec::new(),
         }
     }
@@ -53,15 +53,24 @@ impl Scene {
         self.touched_in(&block(), movers, room)
     }
 
-    fn touched_in(&self, stock: &Stock, movers: Movers, room: &Room) -> Touched {
+    pub fn touched_in(&self, stock: &Stock, movers: Movers, room: &Room) -> Touched {
         let is_rapid = |number: usize| self.rapids.contains(&number);
+        let [cutter, bodies] = [&self.cutter, &self.body].map(|tool| cover(tool, 1e-4));
         let work = [Work {
-            cutter: Cutter::new(&self.cutter, &self.path, None),
-            bodies: &self.bodies,
+            cutter: Cutter::new(&cutter, &self.path, None),
+            bodies: &bodies,
             is_rapid: &is_rapid,
         }];
         let found = touched(stock, &work, movers, room, &());
-        found.expect("a stock").expect("not cancelled")
+        let found = found.expect("a stock").expect("not cancelled");
+        // What is proven can be checked.
+        let is_proven = found.open_count == 0 && found.moves.is_empty();
+        assert_eq!(found.trees.is_some(), is_proven);
+        if is_proven {
+            let own = certified(self, stock, movers, room, &found).checked();
+            assert!(own.is_proven() && own.bound == -room.distance, "{movers:?}: {own:?}");
+        }
+        found
     }
 
     /// The moves that touch; nothing may be open.
@@ -78,7 +87,7 @@ impl Scene {
 }
 
 /// A slot in steps of so much, down to a depth: in and out along x.
-fn slot(step: f64, depth: f64) -> Vec<[f64; 3]> {
+pub(crate) fn slot(step: f64, depth: f64) -> Vec<[f64; 3]> {
     let mut tips = vec![[-40.0, 0.0, 5.0]];
     let mut z = 0.0;
     let mut side = -40.0;
@@ -144,7 +153,7 @@ fn a_shank_follows_its_cutter_along_arcs() {
     let mut scene = Scene::new(&slot(4.0, 4.0), 5.0, 5.0);
     scene.path = Path::with_moves(poses, moves).expect("a path");
     assert_eq!(scene.moves(Movers::Bodies, &ROOM), [0_usize; 0]);
-    scene.bodies = cylinder(5.05, [5.0, 60.0]);
+    scene.body = cylinder(5.05, [5.0, 60.0]);
     assert_eq!(scene.moves(Movers::Bodies, &ROOM), [2, 3, 4, 5]);
 }
 
@@ -152,7 +161,7 @@ fn a_shank_follows_its_cutter_along_arcs() {
 fn a_clearance_is_kept_or_not() {
     // A holder 3 mm wider than the cutter, 2 mm above the stock at the end.
     let mut scene = Scene::new(&slot(4.0, 12.0), 5.0, 5.0);
-    scene.bodies = cylinder(8.0, [14.0, 60.0]);
+    scene.body = cylinder(8.0, [14.0, 60.0]);
     let room = |distance: f64| Room { distance, ..ROOM };
     assert_eq!(scene.moves(Movers::Bodies, &room(1.9)), [0_usize; 0]);
     let found = scene.touched(Movers::Bodies, &room(2.2));
@@ -197,8 +206,8 @@ fn random_scene(kind: u8, wide: f64, way: &[[f64; 2]], (levels, step): (usize, f
     }
     let scene = Scene {
         path: Path::new(poses).expect("a path"),
-        cutter: cover(&tool, 1e-4),
-        bodies: cylinder(2.0 * wide, [4.0, 30.0]),
+        cutter: tool.clone(),
+        body: cylinder(2.0 * wide, [4.0, 30.0]),
         rapids,
     };
     (scene, tool)

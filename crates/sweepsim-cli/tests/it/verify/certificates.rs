@@ -36,6 +36,12 @@ fn a_certificate_belongs_to_its_files() {
         first.contains("proven: no cutter goes deeper into the target than 0.020000 mm"),
         "{said}"
     );
+    for statement in [
+        "proven: no cutter goes deeper into the stock than 0.0010000 mm where it must not cut",
+        "proven: no shank or holder goes deeper into the stock as it is at that time than 0.0010000 mm",
+    ] {
+        assert!(said.contains(statement), "{said}");
+    }
     // From elsewhere, the files are found around the certificate.
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_sweepsim"))
         .args(["check", "--quiet"])

@@ -1,5 +1,6 @@
 //! What is asked of proofs: statements, limits, widths, budgets, and what moves along which paths.
 
+pub(super) mod material;
 pub(super) mod solids;
 
 use super::targets;
@@ -25,7 +26,7 @@ pub(in crate::verify) const PAIRS_OF_MOVE: usize = 400;
 const ZONES: usize = 200_000;
 const ZONES_OF_MOVE: usize = 100;
 /// There, paths are followed within this part of the room.
-const DEVIATION: f64 = 0.5e-3;
+const DEVIATION: f64 = 2e-3;
 
 /// The least and the largest of the limits that are allowed somewhere, of gouges or of excess.
 pub(super) fn limits(job: &Job, of: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
@@ -85,6 +86,8 @@ pub(super) struct AskedAll<'a> {
     job: &'a Job,
     pub obstacles: Vec<Obstacle>,
     pub statements: Vec<Asked>,
+    /// What must not touch the stock as it is at each time.
+    pub beside_stock: Vec<Movers>,
     /// So much room is asked for around bodies; 0 if they may only not touch.
     pub clearance: f64,
     /// What goes no deeper into something touches it.
@@ -96,7 +99,8 @@ pub(super) struct AskedAll<'a> {
 }
 
 impl<'a> AskedAll<'a> {
-    pub fn new(job: &'a Job, request: &Request) -> Self {
+    /// `is_guessed`: whether the stock was guessed; then nothing is asked about it.
+    pub fn new(job: &'a Job, request: &Request, is_guessed: bool) -> Self {
         let mut obstacles = Vec::new();
         let mut statements = Vec::new();
         let clearance = request.judging.clearance.unwrap_or(job.clearance);
@@ -156,26 +160,37 @@ impl<'a> AskedAll<'a> {
         let widths = statements
             .iter()
             .map(|asked| Limits::new(asked.limit, asked.width, 0).deviation);
-        let deviation = widths.fold(f64::INFINITY, f64::min);
+        let beside_stock = if is_guessed { Vec::new() } else { material::movers(job) };
         let mut all = Self {
             job,
             obstacles,
+            deviation: widths.fold(f64::INFINITY, f64::min),
             statements,
+            beside_stock,
             clearance,
             contact,
-            deviation: if deviation.is_finite() { deviation } else { 0.0 },
             reach: BTreeMap::new(),
         };
+        let rooms = all
+            .beside_stock
+            .iter()
+            .map(|movers| DEVIATION * all.distance(*movers).abs());
+        all.deviation = rooms.fold(all.deviation, f64::min);
+        if !all.deviation.is_finite() {
+            all.deviation = 0.0;
+        }
         let largest = all
             .statements
             .iter()
             .map(|asked| CHORDS * asked.limit.abs())
             .fold(0.0, f64::max);
-        let of_tool = |(number, solids): (u32, Vec<Convex>)| {
-            let reach = solids.iter().map(Convex::reach).fold(0.0, f64::max);
-            (number, reach)
-        };
-        all.reach = all.covers(Moving::Both, largest).into_iter().map(of_tool).collect();
+        let mut reach = BTreeMap::<u32, f64>::new();
+        let beside_stock = all.beside_stock(Moving::Both);
+        for (number, solids) in all.covers(Moving::Both, largest).iter().chain(&beside_stock) {
+            let own = reach.entry(*number).or_default();
+            *own = solids.iter().map(Convex::reach).fold(*own, f64::max);
+        }
+        all.reach = reach;
         all
     }
 
@@ -245,14 +260,18 @@ impl<'a> AskedAll<'a> {
 
     /// How much room is asked for beside the stock.
     pub fn room(&self, movers: Movers) -> Room {
-        let distance = match movers {
+        Room {
+            distance: self.distance(movers),
+            deviation: self.deviation,
+            zones: ZONES + ZONES_OF_MOVE * self.job.moves(),
+        }
+    }
+
+    /// So far from the stock; if negative, so deep in it is allowed.
+    fn distance(&self, movers: Movers) -> f64 {
+        match movers {
             Movers::Bodies if self.clearance > 0.0 => self.clearance,
             _ => -self.contact,
-        };
-        Room {
-            distance,
-            deviation: DEVIATION * distance.abs(),
-            zones: ZONES + ZONES_OF_MOVE * self.job.moves(),
         }
     }
 
@@ -269,7 +288,7 @@ impl<'a> AskedAll<'a> {
             ..Scene::default()
         };
         // Without a question, nothing says how near to the paths their motions must be.
-        if self.statements.is_empty() {
+        if self.statements.is_empty() && self.beside_stock.is_empty() {
             return scene;
         }
         for obstacle in &self.obstacles {
@@ -288,16 +307,17 @@ impl<'a> AskedAll<'a> {
             }
         }
         for path in &job.paths {
-            scene.paths.push(motions(&self.cutter(path, &[]), self.deviation));
+            let is_idle = |number: usize| material::kept_from(path, number).is_some();
+            let motions = motions(&self.cutter(path, &[]), self.deviation, &is_idle);
+            scene.paths.push(motions);
         }
         for asked in &self.statements {
             if asked.measure == Measure::Height {
                 scene.margin = self.margin(asked);
+                scene.skin = 6.0 * scene.margin;
                 let within = || job.stock.bounds().map(|[min, max]| Stock::Block { min, max });
-                let all = regions(&job.stock, 6.0 * scene.margin);
-                scene.stock = all
-                    .or_else(|| regions(&within()?, 6.0 * scene.margin))
-                    .unwrap_or_default();
+                let all = regions(&job.stock, scene.skin);
+                scene.stock = all.or_else(|| regions(&within()?, scene.skin)).unwrap_or_default();
             }
             for solid in &asked.obstacles {
                 let setup = self.obstacles[*solid].setup;
@@ -318,9 +338,19 @@ impl<'a> AskedAll<'a> {
                     limit: asked.limit,
                     solid: *solid,
                     movers: movers.collect(),
+                    cutters: Vec::new(),
                 });
             }
         }
+        if scene.stock.is_empty() {
+            scene.stock = regions(&job.stock, scene.skin).unwrap_or_default();
+        }
+        let outlines = job.paths.iter().map(|path| outlines.get(&path.tool));
+        let outlines: Vec<&[usize]> = outlines.map(|own| own.map_or(&[][..], Vec::as_slice)).collect();
+        let beside_stock = self.beside_stock.iter();
+        let questions =
+            beside_stock.filter_map(|movers| material::question(job, *movers, -self.distance(*movers), &outlines));
+        scene.questions.extend(questions);
         scene
     }
 

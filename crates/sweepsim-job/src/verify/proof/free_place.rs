@@ -8,6 +8,7 @@ use super::pairs::{OnPath, Range};
 use crate::base::{JobError, words};
 use crate::session::Session;
 use crate::verify::asked::AskedAll;
+use crate::verify::asked::material::is_guessed;
 use crate::verify::proof::pairs::with_remains;
 use sweepsim_check::Scene;
 use sweepsim_formats::{Job, OnMachine};
@@ -44,7 +45,7 @@ pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, O
     let proof = Proof {
         session,
         scene: Scene::default(),
-        asked: AskedAll::new(session.job, session.request),
+        asked: AskedAll::new(session.job, session.request, is_guessed(session.plan)),
         recalls: false,
     };
     let found = free(&proof, session.request.judging.length_range)?;

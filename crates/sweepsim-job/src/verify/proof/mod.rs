@@ -12,6 +12,7 @@ mod registers;
 pub(super) use free_place::propose;
 pub(super) use registers::compare as compare_registers;
 
+use super::asked::material::is_guessed;
 use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
@@ -159,7 +160,7 @@ fn proven(
     (seen, is_left): (&[ReportedFinding], bool),
     recalls: bool,
 ) -> Result<(All, bool), JobError> {
-    let asked = AskedAll::new(session.job, session.request);
+    let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
     let proof = Proof {
         session,
         scene: asked.scene(),

@@ -3,10 +3,10 @@
 
 use super::Proof;
 use super::crowd::Crowd;
-use super::process::{kept_from, of_tool};
+use super::process::of_tool;
 use crate::base::JobError;
 use crate::verify::asked::Moving;
-use crate::verify::scope::is_guessed;
+use crate::verify::asked::material::{is_guessed, kept_from};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use sweepsim_dexel::Frame;
@@ -255,7 +255,7 @@ pub(super) fn judged(proof: &Proof, paths: &[OnPath]) -> Result<Vec<Judged>, Job
 /// Does something with what is left of the stock at all times; nothing with a stock that was guessed.
 pub(super) fn with_remains<T>(proof: &Proof, then: impl FnOnce(&Remains) -> T) -> Result<Option<T>, JobError> {
     let (session, job) = (proof.session, proof.session.job);
-    if is_guessed(session) {
+    if is_guessed(session.plan) {
         return Ok(None);
     }
     let cutters = proof.asked.beside_stock(Moving::Cutters);

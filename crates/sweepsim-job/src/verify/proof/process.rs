@@ -5,48 +5,27 @@ use super::bodies::body;
 use super::{LISTED, Proof, Proven, described, finding, place};
 use crate::base::JobError;
 use crate::verify::asked::Moving;
-use crate::verify::scope::is_guessed;
+use crate::verify::asked::material::{about, kept_from};
 use crate::verify::texts::ProgramTexts;
 use std::collections::BTreeMap;
-use sweepsim_formats::{Job, JobPath, Measure, Statement, StatementState};
-use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, touched_from};
+use sweepsim_check::{Claim, Question};
+use sweepsim_formats::{Job, Measure, Statement, StatementState};
+use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, material_claim, touched_from};
 
 /// What is proven of bodies and rapids beside the stock; nothing of a stock that was guessed.
 pub(super) fn beside_stock(proof: &Proof, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
-    let job = proof.session.job;
-    if is_guessed(proof.session) {
-        return Ok(Vec::new());
-    }
     let solids = Solids {
         cutters: proof.asked.beside_stock(Moving::Cutters),
         bodies: proof.asked.beside_stock(Moving::Bodies),
     };
-    let must_not_cut = |path: &JobPath| (0..path.path.moves()).any(|number| kept_from(path, number).is_some());
-    let mut all = Vec::new();
-    if job.paths.iter().any(must_not_cut) {
-        all.push(judged(proof, texts, &solids, Movers::Rapids)?);
-    }
-    if job.bodies.values().any(|own| !own.is_empty()) {
-        all.push(judged(proof, texts, &solids, Movers::Bodies)?);
-    }
-    Ok(all)
+    let all = proof.asked.beside_stock.iter();
+    all.map(|movers| judged(proof, texts, &solids, *movers)).collect()
 }
 
 /// Of each tool.
 struct Solids {
     cutters: BTreeMap<u32, Vec<Convex>>,
     bodies: BTreeMap<u32, Vec<Convex>>,
-}
-
-/// Why a move must not cut, by the kind of finding if it does.
-pub(super) fn kept_from(path: &JobPath, number: usize) -> Option<&'static str> {
-    let why = [
-        ("rapid", &path.rapid),
-        ("spindle", &path.spindle_stopped),
-        ("feed", &path.no_feed),
-    ];
-    why.into_iter()
-        .find_map(|(kind, flags)| flags.get(number).then_some(kind))
 }
 
 pub(super) fn of_tool(all: &BTreeMap<u32, Vec<Convex>>, tool: u32) -> &[Convex] {
@@ -68,15 +47,30 @@ fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Move
     let found = touched_from(&proof.known(None), &job.stock, &work, movers, &room, session.monitor);
     let found = found.map_err(|error| session.failure(format!("stock: {error}")))?;
     let found = found.ok_or(JobError::Cancelled)?;
-    let about = match movers {
-        Movers::Bodies => "collision",
-        Movers::Rapids => "rapid",
-    };
+    let about = about(movers);
     let mut statement = Statement::new(about, room.distance.abs());
     if room.distance > 0.0 {
         statement.measure = Measure::Distance;
     }
-    Ok(said(job, texts, statement, &found, solids))
+    let mut proven = said(job, texts, statement, &found, solids);
+    proven.claims = claims(proof, solids, movers, &found);
+    Ok(proven)
+}
+
+/// An answer to the question about some movers, if it is asked.
+fn claims(proof: &Proof, solids: &Solids, movers: Movers, found: &Touched) -> Vec<(usize, Claim)> {
+    let [bodies, cutters] = [&solids.bodies, &solids.cutters].map(|solids| proof.asked.along(solids, None));
+    let own = match movers {
+        Movers::Bodies => &bodies,
+        Movers::Rapids => &cutters,
+    };
+    let questions = proof.scene.questions.iter().enumerate();
+    let asked = questions.filter(|(_, question)| question.about == about(movers));
+    let claim = |(number, question): (usize, &Question)| {
+        let claim = material_claim(&proof.scene, question, [own, &cutters], question.limit, found)?;
+        Some((number, claim))
+    };
+    asked.filter_map(claim).collect()
 }
 
 fn said(job: &Job, texts: &mut ProgramTexts, mut statement: Statement, found: &Touched, solids: &Solids) -> Proven {

@@ -1,6 +1,6 @@
 //! Why no point of a moving solid in a cell is deeper than a number at a time: a theorem for each kind of leaf.
 //!
-//! `H` is the cell, `h` half its size, `H′` its surroundings ([`cell`](crate::cell)), `T` the target
+//! `H` is the cell, `h` half its size, `H′` its surroundings ([`cell`](super::cell)), `T` the target
 //! ([`surface`](crate::surface)); the depth of a point is its distance from what is not in `T`. `B` is the solid at any
 //! of the times; `r(n)` bounds `⟨n, x⟩` over `B` and over `B ∩ H` ([`motion`](crate::motion)).
 //!
@@ -25,7 +25,7 @@
 //!
 //! All times and all of the surface are in leaves; so a connected solid that is outside once, is always outside.
 
-use crate::cell::{Cell, MOST_PLANES};
+use super::cell::{Cell, MOST_PLANES};
 use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
