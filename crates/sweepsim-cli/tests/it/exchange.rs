@@ -157,8 +157,8 @@ fn comparison_tells_the_worst() {
         ("slot", less(12, "Block(min: (-20, -4, 7), max: (20, 4, 20))"), 41),
         ("web", less(12, web), 41),
         ("through", less(12, "Block(min: (-8, -8, -5), max: (8, 8, 20))"), 41),
-        ("wide", hole(10.0), 121),
-        ("narrow", hole(9.9), 121),
+        ("wide", hole(10.0), 161),
+        ("narrow", hole(9.9), 161),
     ];
     let workdir = Workdir::new("");
     for (name, stock, cells) in &solids {
