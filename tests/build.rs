@@ -11,6 +11,6 @@ fn main() {
     if Path::new(DATA).is_dir() {
         println!("cargo::rustc-cfg=shared_data");
         // Only what is there: cargo looks again in each run for what is missing, and compiles all tests anew.
-        println!("cargo::rerun-if-changed={DATA}/MANIFEST.md");
+        println!("cargo::rerun-if-changed={DATA}/MANIFEST.tsv");
     }
 }
