@@ -31,7 +31,7 @@ pub(super) type Held = SmallVec<[bool; 16]>;
 /// When, in short numbers.
 type Times = SmallVec<[f32; 2]>;
 
-/// As many stretches are tried for a zone, those deepest around its middle.
+/// As many stretches are tried for a zone, those deepest around its middle; and the last one.
 const TRIED: usize = 4;
 /// How much a place nearer to the axis counts, beside one that is deeper.
 const AXIS: f64 = 0.05;
@@ -99,10 +99,16 @@ impl History<'_> {
         }
         let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order);
         if all.len() > TRIED {
-            all.select_nth_unstable_by(TRIED, in_order);
+            // And the last one, which may have ended where this begins.
+            let last = (0..all.len()).max_by_key(|k| (all[*k].numbers[0], all[*k].numbers[2]));
+            let last = last.map(|last| all.swap_remove(last));
+            all.select_nth_unstable_by(TRIED - 1, in_order);
             all.truncate(TRIED);
+            all.sort_by(in_order);
+            all.extend(last);
+        } else {
+            all.sort_by(in_order);
         }
-        all.sort_by(in_order);
         let mut best = Held::from_elem(false, samples.rings.len());
         let count = |held: &Held| held.iter().filter(|held| **held).count();
         for candidate in &all {
