@@ -120,18 +120,15 @@ fn a_shank_as_wide_as_its_cutter_slides_along_the_walls_of_its_slot() {
 fn a_ball_withdraws_on_a_slope() {
     let row = |y: f64, moves: u32| (0..=moves).map(move |k| [6.0 - 0.22 * f64::from(k), y, -1.0 - 0.08 * f64::from(k)]);
     let mut tips: Vec<[f64; 3]> = row(0.0, 40).collect();
-    let down = tips[tips.len() - 1];
     // Up, and down again where the second row begins.
-    tips.extend([[down[0], 0.0, 5.0], [6.0, 0.21, 5.0]]);
+    tips.extend([[-2.8, 0.0, 5.0], [6.0, 0.21, 5.0]]);
     tips.extend(row(0.21, 20));
-    let last = tips[tips.len() - 1];
-    tips.push([last[0], last[1], 5.0]);
+    let end = tips.len() - 1;
+    tips.push([tips[end][0], tips[end][1], 5.0]);
     let mut scene = Scene::new(&tips, 15.0, 5.0);
-    scene.cutter = Tool::ball(3.0, 30.0).expect("a tool");
-    scene.rapids = vec![40, 41, tips.len() - 2];
+    (scene.cutter, scene.rapids) = (Tool::ball(3.0, 30.0).expect("a tool"), vec![40, 41, end]);
     assert_eq!(scene.moves(Movers::Rapids, &ROOM), [0_usize; 0]);
     // Where it did not go down before, it touches.
-    let end = scene.path.moves() - 1;
     tips[end][2] -= 0.5;
     tips[end + 1] = [tips[end][0], tips[end][1] + 0.1, 5.0];
     scene.path = Scene::new(&tips, 15.0, 5.0).path;
