@@ -9,6 +9,7 @@
 mod certificate;
 mod excess;
 mod motion;
+mod numbers;
 mod process;
 mod recall;
 mod search;

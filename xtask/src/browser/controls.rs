@@ -17,7 +17,7 @@ const SAVED: &str = "(() => {
     return saved;
 })()";
 
-/// How far the slider is, twice, a moment apart.
+/// How far the slider is, three times, a moment apart.
 const PLAYED: &str = "(async () => {
     const [slider, play] = ['moment', 'play'].map((id) => document.getElementById(id));
     play.click();

@@ -30,7 +30,7 @@ fn compared(workdir: &Workdir, part: &str, target: &str) -> ComparisonReport {
 /// Compares forms of a part with forms of its target: without dexels along z the deviation is found, with them it is in
 /// the interval.
 fn forms_tell(workdir: &Workdir, part: &str, target: &str, size: f64, off: f64) {
-    // Of a part and itself, all that is asked of two parts holds by fewer of them.
+    // For a part beside itself, two pairs of files are enough.
     let pairs: &[[usize; 2]] = if part == target {
         &[[0, 2], [1, 1]]
     } else {

@@ -1,4 +1,4 @@
-use crate::common::{block, dot, sub};
+use crate::common::{dot, sub};
 use sweepsim_dexel::internals::nearest_on;
 use sweepsim_dexel::*;
 use sweepsim_props::*;
@@ -8,7 +8,7 @@ proptest! {
     #[test]
     fn distances_to_a_box(p in [-4.0..7.0_f64, -4.0..7.0, -4.0..7.0]) {
         let (min, max) = ([-1.0, 0.0, 0.5], [3.0, 2.0, 4.5]);
-        let near = DistanceTo::new(&block(min, max)).unwrap().nearest(p).unwrap();
+        let near = DistanceTo::new(&TriangleSoup::block(min, max)).unwrap().nearest(p).unwrap();
         let out = [0, 1, 2].map(|k| (min[k] - p[k]).max(p[k] - max[k]));
         let beyond = out.iter().map(|c| c.max(0.0).powi(2)).sum::<f64>().sqrt();
         let within = out.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(0.0);
@@ -61,7 +61,10 @@ fn the_tree_finds_what_all_triangles_have() {
 
 #[test]
 fn furthest_points_are_those_of_the_shapes() {
-    let (small, large) = (block([0.0; 3], [4.0; 3]), block([0.0, 0.0, -0.5], [4.0, 4.0, 6.0]));
+    let (small, large) = (
+        TriangleSoup::block([0.0; 3], [4.0; 3]),
+        TriangleSoup::block([0.0, 0.0, -0.5], [4.0, 4.0, 6.0]),
+    );
     let (place, near) = DistanceTo::new(&small).unwrap().furthest(&large, 0.1).unwrap();
     // Samples between the corners are rounded.
     assert!(
@@ -88,7 +91,7 @@ fn furthest_points_are_those_of_the_shapes() {
 
 #[test]
 fn sides_of_a_thin_wall_are_told_apart() {
-    let tree = DistanceTo::new(&block([0.0; 3], [9.0, 9.0, 0.1])).unwrap();
+    let tree = DistanceTo::new(&TriangleSoup::block([0.0; 3], [9.0, 9.0, 0.1])).unwrap();
     let p = [4.0, 4.0, 0.3];
     assert!((tree.nearest(p).unwrap().distance - 0.2).abs() < 1e-12);
     let lower = tree.nearest_facing(p, [0.0, 0.0, -1.0], 1.0).unwrap();
@@ -104,7 +107,7 @@ fn sides_are_right_where_triangles_lie_on_each_other() {
     let boxes = [[[0.0; 3], [2.0, 3.0, 4.0]], [[2.0, 0.5, 0.5], [3.0, 2.5, 3.5]]];
     let mut triangles: Vec<[[f64; 3]; 3]> = boxes
         .iter()
-        .flat_map(|[min, max]| block(*min, *max).triangles)
+        .flat_map(|[min, max]| TriangleSoup::block(*min, *max).triangles)
         .collect();
     // A flap upon the first.
     let flap = [[1.0, 1.0, 4.0], [1.0, 2.0, 4.0], [1.0, 1.5, 7.0]];

@@ -1,4 +1,3 @@
-use crate::common::block as cube;
 use std::sync::Arc;
 use sweepsim_dexel::*;
 
@@ -10,7 +9,7 @@ fn grid() -> Grid {
 fn a_block_and_its_mesh_are_the_same() {
     let (min, max) = ([-5.0, -4.0, 0.0], [5.0, 4.0, 2.5]);
     let block = Stock::Block { min, max }.dexels(&grid()).unwrap();
-    let mesh = Stock::Mesh(cube(min, max)).dexels(&grid()).unwrap();
+    let mesh = Stock::Mesh(TriangleSoup::block(min, max)).dexels(&grid()).unwrap();
     assert_eq!(block.volume(), mesh.volume());
     // 50 × 40 cells of 0.2.
     assert!((block.volume() - 200.0).abs() < 1e-9);
@@ -79,13 +78,13 @@ fn bad_stock_is_refused() {
     }
     .dexels(&grid());
     assert!(matches!(bad, Err(StockError::Block { .. })));
-    let mut open = cube([0.0; 3], [1.0; 3]);
+    let mut open = TriangleSoup::block([0.0; 3], [1.0; 3]);
     open.triangles.pop();
     assert!(matches!(
         Stock::Mesh(open).dexels(&grid()),
         Err(StockError::Mesh(MeshError::Open { edges: 3, .. }))
     ));
-    let mut inside_out = cube([-5.0; 3], [5.0; 3]);
+    let mut inside_out = TriangleSoup::block([-5.0; 3], [5.0; 3]);
     for corners in &mut inside_out.triangles {
         corners.swap(0, 1);
     }
@@ -114,7 +113,7 @@ fn placed_solids_are_where_the_frame_puts_them() {
     let solid = Stock::Difference(
         Stock::Union(vec![
             block([-6.0, -5.0, -3.0], [6.0, 5.0, 2.0]),
-            Stock::Mesh(cube([4.0, 3.0, 1.0], [7.0, 6.0, 4.0])),
+            Stock::Mesh(TriangleSoup::block([4.0, 3.0, 1.0], [7.0, 6.0, 4.0])),
         ])
         .into(),
         vec![

@@ -14,6 +14,7 @@
 
 use super::removed::Holder;
 use super::surface::{Halved, Patch};
+use crate::numbers::write_number;
 use smallvec::SmallVec;
 
 /// The trees of some patches of the surface: the first, how many, and the bytes.
@@ -56,28 +57,19 @@ impl Record {
 
     pub fn near(&mut self, triangle: u32) {
         self.0.push(2);
-        self.number(triangle as usize);
+        write_number(&mut self.0, triangle as usize);
     }
 
     pub fn removed(&mut self, holder: Holder) {
         self.0.push(3);
         for number in [holder.course, holder.solid, holder.stretch] {
-            self.number(number);
+            write_number(&mut self.0, number);
         }
         self.0.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
     }
 
     pub fn halved(&mut self, halved: Halved) {
         self.0.extend(bytes_of(halved));
-    }
-
-    /// In groups of seven bits, the lowest first.
-    fn number(&mut self, mut number: usize) {
-        while number > 0x7f {
-            self.0.push(number as u8 | 0x80);
-            number >>= 7;
-        }
-        self.0.push(number as u8);
     }
 }
 

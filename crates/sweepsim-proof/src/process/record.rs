@@ -12,6 +12,7 @@
 //! | 10, 11, 12, 13 | Divided: time in half, the outline into its pieces, one of these in half, angles. |
 //! | 14 | Cut at a height, an `f32`: what is below, and what is above. |
 
+use crate::numbers::write_number;
 use smallvec::SmallVec;
 
 /// A node with what belongs to it, but for its parts.
@@ -81,17 +82,8 @@ impl Record {
 impl Holder {
     pub fn bytes(&self) -> Bytes {
         let mut bytes = Bytes::from_slice(&[if self.times.len() < 2 { 3 } else { 4 }]);
-        self.numbers.iter().for_each(|own| number(&mut bytes, *own));
+        self.numbers.iter().for_each(|own| write_number(&mut bytes, *own));
         bytes.extend(self.times.iter().flat_map(|time| time.to_le_bytes()));
         bytes
     }
-}
-
-/// In groups of seven bits, the lowest first.
-pub(super) fn number(bytes: &mut Bytes, mut number: usize) {
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
 }

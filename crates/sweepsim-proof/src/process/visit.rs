@@ -1,10 +1,11 @@
 //! The search on a stretch of a path, with the zones first that may be deepest in material.
 
 use super::history::Moment;
-use super::record::{Bytes, Record, number};
+use super::record::{Bytes, Record};
 use super::samples::{Samples, Turned};
 use super::scene::{Found, Scene};
 use super::zone::Zone;
+use crate::numbers::write_number;
 use crate::statement::{OpenBox, Witness};
 use crate::tool::Convex;
 use nalgebra::Vector3;
@@ -172,7 +173,7 @@ impl Search<'_> {
         for planes in before.planes_below(&over, normal, (need, allowed))? {
             bytes.push(u8::try_from(planes.len()).ok()?);
             for (plane, weight) in &planes {
-                number(&mut bytes, *plane);
+                write_number(&mut bytes, *plane);
                 if planes.len() > 1 {
                     bytes.extend(weight.to_le_bytes());
                 }
@@ -229,7 +230,7 @@ impl Search<'_> {
         let mut samples = zone.samples(&self.turned);
         if let Some(solid) = self.is_in_cutter(zone) {
             let mut bytes = Bytes::from_slice(&[5]);
-            number(&mut bytes, solid);
+            write_number(&mut bytes, solid);
             return Visit::Free(Some(bytes));
         }
         let corners = samples.corners();

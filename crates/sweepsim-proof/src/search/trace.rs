@@ -19,6 +19,7 @@
 //! `k − 1` normals ago. Numbers are in groups of seven bits, the lowest first; each but the last has its
 //! highest bit set.
 
+use crate::numbers::write_number;
 use crate::solid::{MOST_PLANES, Written};
 use std::collections::HashMap;
 
@@ -184,24 +185,16 @@ impl Writer {
         };
         let before = self.known.insert(key, self.normals);
         match (before, normal) {
-            (Some(before), _) => self.number(1 + self.normals - before),
+            (Some(before), _) => write_number(&mut self.bytes, 1 + self.normals - before),
             (None, Written::OfTriangle(number)) => {
-                self.number(1);
-                self.number(number as usize);
+                write_number(&mut self.bytes, 1);
+                write_number(&mut self.bytes, number as usize);
             }
             (None, Written::Given(short)) => {
-                self.number(0);
+                write_number(&mut self.bytes, 0);
                 self.bytes.extend(short.iter().flat_map(|c| c.to_le_bytes()));
             }
         }
         self.normals += 1;
-    }
-
-    fn number(&mut self, mut number: usize) {
-        while number > 0x7f {
-            self.bytes.push(number as u8 | 0x80);
-            number >>= 7;
-        }
-        self.bytes.push(number as u8);
     }
 }
