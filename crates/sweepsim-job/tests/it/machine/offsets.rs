@@ -37,7 +37,7 @@ fn is_free(outcome: &Outcome) -> bool {
     state(outcome) == StatementState::Proven && limits == 0 && met(outcome).is_empty()
 }
 
-/// The box is free at some of its corners and in its middle, and it is as large as it may be on the side that is bounded.
+/// The box is free at some corners and in its middle, and as large as it may be on the side that is bounded.
 fn check(program: &str, side: usize, is_upper: bool, bound: f64) {
     let outcome = run([0.0; 3], program, placed());
     assert!(!is_free(&outcome));
