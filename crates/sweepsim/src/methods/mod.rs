@@ -11,6 +11,7 @@ pub(crate) mod method;
 mod placement;
 pub(crate) mod planes;
 pub(crate) mod search;
+pub(crate) mod sheets;
 pub(crate) mod surface;
 pub(crate) mod translation;
 pub(crate) mod turning;

@@ -1,6 +1,6 @@
 //! The lines that may have a crossing, found by halving blocks of neighbouring lines.
 
-use super::intervals::Range;
+use crate::methods::sheets::intervals::Range;
 use crate::methods::lattice::Lattice;
 use crate::methods::translation::numbers;
 

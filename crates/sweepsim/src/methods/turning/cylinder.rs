@@ -16,7 +16,7 @@ mod standing;
 pub(super) use standing::standing;
 
 use super::axis_motion::{AxisMotion, Bounds, Moment};
-use super::intervals::{
+use crate::methods::sheets::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
 use super::lean::Lean;

@@ -10,7 +10,7 @@
 
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::blocks::{around, blocks, distance};
-use super::intervals::Range;
+use crate::methods::sheets::intervals::Range;
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Known, Sample, Turn, start, zero};

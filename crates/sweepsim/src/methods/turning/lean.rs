@@ -1,7 +1,7 @@
 //! The coordinates of a tool that leans: `α` across its axis in the vertical plane of it, `β` horizontally across both, `ζ` along it.
 
 use super::axis_motion::{AxisMotion, Moment};
-use super::intervals::{Range, add, scaled, sub};
+use crate::methods::sheets::intervals::{Range, add, scaled, sub};
 use nalgebra::Vector3;
 
 /// The tool's coordinates at one time.

@@ -10,7 +10,6 @@ mod ball;
 mod blocks;
 mod cylinder;
 mod disc;
-mod intervals;
 mod lean;
 mod resting;
 mod rim;

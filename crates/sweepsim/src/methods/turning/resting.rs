@@ -5,7 +5,7 @@ use super::axis_motion::Moment;
 use super::blocks::{around, blocks, distance};
 use super::cylinder::Cylinder;
 use super::disc::{Disc, Placed};
-use super::intervals::{Range, Sign};
+use crate::methods::sheets::intervals::{Range, Sign};
 use super::lean::Lean;
 use super::shell::Shell;
 use crate::algebra::certain::certainly_within;

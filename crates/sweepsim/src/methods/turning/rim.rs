@@ -12,7 +12,7 @@
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::blocks::{around, blocks, distance};
 use super::disc::Placed;
-use super::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
+use crate::methods::sheets::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Known, Sample, start, zero};

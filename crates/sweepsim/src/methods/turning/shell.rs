@@ -9,7 +9,7 @@ mod search;
 pub(super) use search::ShellSearch;
 
 use super::axis_motion::{AxisMotion, Moment};
-use super::intervals::{Range, Sign};
+use crate::methods::sheets::intervals::{Range, Sign};
 use nalgebra::Vector3;
 
 /// Where a line meets the surface at a time. The rest is 0 if it does not.

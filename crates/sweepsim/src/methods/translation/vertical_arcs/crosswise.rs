@@ -10,7 +10,8 @@
 
 use super::Rolling;
 use super::quarter::{Profile, Quarter};
-use super::roots::{self, Bounds, Curve};
+use super::roots::{Bounds, Curve, CurvePoint};
+use crate::methods::sheets::intervals::{hull, mul, scaled, square};
 use std::f64::consts::FRAC_PI_2;
 
 /// Of a quadrant of the arc, the range of angles on it.
@@ -87,7 +88,7 @@ pub(super) struct CrosswisePoint {
     rho: f64,
 }
 
-impl roots::CurvePoint for CrosswisePoint {
+impl CurvePoint for CrosswisePoint {
     fn unknown(&self) -> f64 {
         self.angle
     }
@@ -97,38 +98,20 @@ impl roots::CurvePoint for CrosswisePoint {
     }
 }
 
-/// The products of two ranges.
-fn products(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let all = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-    all.into_iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| {
-            [low.min(c), high.max(c)]
-        })
-}
-
-fn sorted([a, b]: [f64; 2]) -> [f64; 2] {
-    [a.min(b), a.max(b)]
-}
-
 impl<'a> Crossing<'a> {
     /// `quadrant`: from this many right angles on.
     pub fn new(quarter: &'a Quarter, (r, slack): (f64, f64), [q, p]: [f64; 2], quadrant: i64) -> Self {
-        let shape = match quarter.curve {
+        let shape = match quarter.profile {
             Profile::Cone { rate, .. } => Shape::Cone {
                 rate: rate * quarter.climb,
-                wide: quarter.sheet.radii[0] + rate * (quarter.climb * p - quarter.ends[0]),
+                wide: quarter.radii[0] + rate * (quarter.climb * p - quarter.ends[0]),
             },
-            Profile::Torus {
+            Profile::Torus { middle, level, tube } => Shape::Torus {
                 middle,
-                level,
-                tube,
-                side,
-            } => Shape::Torus {
-                middle,
-                offset: side * middle,
+                offset: quarter.signs[0] * middle,
                 tube,
                 above: p - quarter.climb * level,
-                side,
+                side: quarter.signs[0],
             },
         };
         Self {
@@ -163,10 +146,10 @@ impl<'a> Crossing<'a> {
     /// The ranges of the ends of the angles at which the line is between the ends of the surface; where it is beside it all the time is left out. `None` if it is nowhere.
     pub fn angles_between_ends(&self, [low, high]: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let (r, wide) = (self.r, 4.0 * self.slack);
-        let [near, far] = sorted(self.quarter.ends.map(|end| self.quarter.climb * end));
-        let outer = self.quarter.sheet.radii[1] + wide;
+        let [near, far] = scaled(self.quarter.climb, self.quarter.ends);
+        let outer = self.quarter.radii[1] + wide;
         // Ranges of `s` for certain and at most, and of `c` at most.
-        let span = |[a, b]: [f64; 2], sine: bool| sorted([self.angle(a / r, sine), self.angle(b / r, sine)]);
+        let span = |[a, b]: [f64; 2], sine: bool| hull(self.angle(a / r, sine), self.angle(b / r, sine));
         let most = span([self.p - far - wide, self.p - near + wide], true);
         let least = span([self.p - far + wide, self.p - near - wide], true);
         let beside = span([self.q - outer, self.q + outer], false);
@@ -196,13 +179,13 @@ impl<'a> Crossing<'a> {
     /// The outward normal, with half of what is covered.
     pub fn normal(&self, at: &CrosswisePoint, half: f64) -> [f64; 3] {
         let [e, f] = match self.shape {
-            Shape::Cone { .. } => match self.quarter.curve {
+            Shape::Cone { .. } => match self.quarter.profile {
                 Profile::Cone { normal, .. } => normal,
                 Profile::Torus { .. } => [0.0; 2],
             },
             Shape::Torus { tube, side, .. } => [side * at.u / tube, at.eta / tube],
         };
-        let [e, f] = [e, f].map(|c| self.quarter.sheet.out * c);
+        let [e, f] = [e, f].map(|c| self.quarter.out * c);
         [e * at.x / at.rho, f, e * half / at.rho]
     }
 
@@ -283,38 +266,38 @@ impl Curve for Crossing<'_> {
     fn bounds(&self, [a, b]: [&CrosswisePoint; 2]) -> Bounds {
         let (r, q) = (self.r, self.q);
         // Neither turns back within a quadrant.
-        let [c, s] = [sorted([a.c, b.c]), sorted([a.s, b.s])];
+        let [c, s] = [hull(a.c, b.c), hull(a.s, b.s)];
         let extremes = [c, s].map(|[low, high]| low.abs().max(high.abs()));
         match self.shape {
             Shape::Cone { rate, wide } => {
                 let twice = r * (1.0 + rate * rate);
-                let [cc, ss] = [c, s].map(|range| sorted(range.map(|value| value * value)));
+                let [cc, ss] = [c, s].map(square);
                 let bent = [twice * (cc[0] - ss[1]), twice * (cc[1] - ss[0])];
                 let size = (rate * wide).abs() + q.abs() + twice;
-                let terms = [products([rate * wide; 2], s), products([-q; 2], c), bent];
+                let terms = [mul([rate * wide; 2], s), mul([-q; 2], c), bent];
                 self.bounded(&terms, (extremes, rate * rate, size))
             }
             Shape::Torus {
                 offset, tube, above, ..
             } => {
-                let [thin, thick] = sorted([a.u, b.u]);
+                let [thin, thick] = hull(a.u, b.u);
                 if offset != 0.0 && !(thin > 0.0) {
                     return Bounds::UNKNOWN;
                 }
                 if offset == 0.0 {
                     let size = above.abs() + q.abs();
-                    let terms = [products([-above; 2], s), products([-q; 2], c)];
+                    let terms = [mul([-above; 2], s), mul([-q; 2], c)];
                     return self.bounded(&terms, (extremes, 1.0, size));
                 }
-                let slopes = sorted([a.eta / a.u, b.eta / b.u]);
-                let steep = products([offset; 2], slopes);
-                let along = products([-above - steep[1], -above - steep[0]], s);
-                let cc = sorted(c.map(|value| value * value));
+                let slopes = hull(a.eta / a.u, b.eta / b.u);
+                let steep = mul([offset; 2], slopes);
+                let along = mul([-above - steep[1], -above - steep[0]], s);
+                let cc = square(c);
                 let bends = [cc[0] / (thick * thick * thick), cc[1] / (thin * thin * thin)];
-                let bent = products([-offset * r * tube * tube; 2], bends);
+                let bent = mul([-offset * r * tube * tube; 2], bends);
                 let size = above.abs() + q.abs() + steep[0].abs().max(steep[1].abs());
                 let rise = 1.0 + offset.abs() * tube * tube / (thin * thin * thin);
-                self.bounded(&[along, products([-q; 2], c), bent], (extremes, rise, size))
+                self.bounded(&[along, mul([-q; 2], c), bent], (extremes, rise, size))
             }
         }
     }
@@ -373,7 +356,7 @@ mod tests {
                 let first = quadrant as f64 * FRAC_PI_2;
                 let Some([from, to]) = crossing.angles_between_ends([first, first + FRAC_PI_2]) else { continue };
                 prop_assert!(from[0] <= from[1] && to[0] <= to[1] && from[0] >= first && to[1] <= first + FRAC_PI_2);
-                let [a, b] = sorted(shares.map(|share| from[1] + (to[0] - from[1]) * (0.001 + 0.998 * share)));
+                let [a, b] = hull(shares[0], shares[1]).map(|share| from[1] + (to[0] - from[1]) * (0.001 + 0.998 * share));
                 let [a, b] = [a, b].map(|angle| crossing.at(angle));
                 let bounds = crossing.bounds([&a, &b]);
                 let none = crossing.vanishes_nowhere([&a, &b]);

@@ -12,30 +12,33 @@
 //!
 //! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
 
-mod ball;
+mod circles;
 mod crosswise;
-mod edge;
-mod lengthwise;
+mod edges;
 mod level;
-mod parallel;
 mod quarter;
 mod roots;
-mod sheet;
-mod slice;
+mod section;
+mod walls;
 
 use super::arc_place::ArcPlace;
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
-use crate::cutter::outline::{Outline, Piece, Shape};
+use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
+use crate::methods::sheets::intervals::{Range, hull};
 use crate::time::circles::VerticalArc;
-use ball::ball;
 use nalgebra::Vector3;
-use sheet::Sheet;
+use quarter::Quarter;
+use roots::Open;
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
 
+/// What vanishes is beyond doubt from so many times its error on.
+const CERTAIN: f64 = 64.0;
+/// Ends are this many rounding errors wide.
+const END: f64 = 8.0;
 /// Angles of the arc are cut off at places that are exact to a few roundings.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -47,7 +50,6 @@ pub(crate) fn sweep_vertical_arc(
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
-    let [patches, edges] = done;
     // The centre of a wide arc has fewer digits than the tool.
     let far = arc.centre.iter().fold(arc.radius, |far, c| far.max(c.abs()));
     let slack = slack.max(16.0 * f64::EPSILON * far);
@@ -62,6 +64,13 @@ pub(crate) fn sweep_vertical_arc(
         arc,
         slack,
         axis: own,
+        stance: match own {
+            _ if arc.level => Stance::Level,
+            [0.0, 0.0, 1.0] => Stance::Upright,
+            [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
+            [1.0 | -1.0, 0.0, 0.0] => Stance::Within,
+            _ => Stance::Other,
+        },
         directions: arc.directions(),
         rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| {
             let [x, y, z] = segment.velocity(end)[1];
@@ -73,29 +82,7 @@ pub(crate) fn sweep_vertical_arc(
         lines,
         source,
     };
-    let stance = match own {
-        _ if arc.level => Stance::Level,
-        [0.0, 0.0, 1.0] => Stance::Upright,
-        [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
-        [1.0 | -1.0, 0.0, 0.0] => Stance::Within,
-        _ => Stance::Other,
-    };
-    for piece in &outline.pieces {
-        if rolling.piece(piece, stance) {
-            patches[piece.patches.clone()].fill(true);
-        }
-    }
-    for rim in &outline.rims {
-        match stance {
-            Stance::Upright if rim.height <= rolling.highest => rolling.rim(rim),
-            Stance::Upright => {}
-            Stance::Across => rolling.edge_across(rim),
-            Stance::Within => rolling.edge_lengthwise(rim),
-            Stance::Level => rolling.level_edge(rim),
-            Stance::Other => continue,
-        }
-        edges[rim.edges.clone()].fill(true);
-    }
+    outline.settle(&mut rolling, Rolling::piece, Rolling::rim, done);
 }
 
 /// How the tool's axis lies.
@@ -119,8 +106,9 @@ struct Rolling<'a, 'b, S> {
     slack: f64,
     /// The tool's axis, `(q, p, z)`.
     axis: [f64; 3],
+    stance: Stance,
     /// The ranges of `cos α` and `sin α`.
-    directions: [[f64; 2]; 2],
+    directions: [Range; 2],
     /// The velocity along the dexels at the ends, but for positive factors; for a plane across them, that across the tool's axis.
     rates: [f64; 2],
     /// What is this high above the tip is above the ceiling at all times.
@@ -129,60 +117,95 @@ struct Rolling<'a, 'b, S> {
     source: S,
 }
 
-/// The directions with a given cosine.
-#[derive(Clone, Copy, Debug)]
-enum Directions {
-    None,
-    /// It is too close to 1 or −1: whether one of them may be on the arc.
-    Level(bool),
-    /// The sine, of both signs, and the error of the angles.
-    Pair(f64, f64),
+/// Half of what a circle or a ball covers of a line.
+struct Chord {
+    half: f64,
+    /// How far off it may be.
+    off: f64,
+    /// Whether it is beyond that.
+    certain: bool,
 }
 
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
-    /// Whether it is settled.
-    fn piece(&mut self, piece: &Piece, stance: Stance) -> bool {
-        let upright = stance == Stance::Upright;
-        if upright && piece.heights()[0] > self.highest {
-            return true;
+    /// `None` if there is no closed form.
+    fn piece(&mut self, piece: &Piece) -> Option<()> {
+        let stance = self.stance;
+        if stance == Stance::Upright && piece.heights()[0] > self.highest {
+            return Some(());
         }
-        if stance == Stance::Level {
-            return self.level(piece);
-        }
-        if let Some(part) = piece.ball() {
-            ball(self, &part);
-            return true;
-        }
-        match stance {
-            Stance::Across => return self.slices(piece),
-            Stance::Within => return self.lengthwise(piece),
-            Stance::Upright | Stance::Level | Stance::Other => {}
-        }
-        match piece.shape {
-            // No line meets an upright wall.
-            Shape::Line { normal: [1.0, _] } if upright => true,
-            Shape::Line { normal: [0.0, up] } if upright => {
-                let radii = [piece.from[0].min(piece.to[0]), piece.from[0].max(piece.to[0])];
-                self.disc(piece.from[1], radii, up);
-                true
+        if let Some(ball) = piece.ball() {
+            if stance == Stance::Level {
+                self.level_ball(&ball);
+            } else {
+                self.ball(&ball);
             }
-            _ if upright => {
-                let sheets = Sheet::all(piece, self.slack);
-                for sheet in sheets.iter().flatten() {
-                    self.sheet(sheet);
+            return Some(());
+        }
+        match (stance, piece.shape) {
+            (Stance::Other, _) => return None,
+            (Stance::Across, Shape::Line { normal: [0.0, _] }) => {
+                self.flat(piece.from[1], piece.from[0].max(piece.to[0]));
+            }
+            (Stance::Across, _) => return self.slices(piece),
+            (Stance::Upright, Shape::Line { normal: [0.0, up] }) => {
+                self.disc(piece.from[1], hull(piece.from[0], piece.to[0]), up);
+            }
+            // They are seen edge-on.
+            (
+                Stance::Upright,
+                Shape::Line {
+                    normal: [1.0, _] | [_, 0.0],
+                },
+            )
+            | (_, Shape::Line { normal: [0.0, _] }) => {}
+            (_, Shape::Line { normal: [out, 0.0] }) => {
+                let (radius, heights) = (piece.from[0], hull(piece.from[1], piece.to[1]));
+                if stance == Stance::Level {
+                    self.level_wall(radius, heights, out);
+                } else {
+                    self.wall(radius, heights, out);
                 }
-                sheets.is_some()
             }
-            _ => false,
+            _ => {
+                for quarter in &Quarter::all(piece, self.slack)? {
+                    let [low, high] = if stance == Stance::Upright {
+                        quarter.radii
+                    } else {
+                        quarter.ends
+                    };
+                    // What is shorter is at most an end of its neighbour.
+                    if high - low > self.slack {
+                        match stance {
+                            Stance::Level => self.level_quarter(quarter),
+                            _ => self.quarter(quarter, stance == Stance::Within),
+                        }
+                    }
+                }
+            }
         }
+        Some(())
     }
 
-    /// The lines in ranges of `p` and `q` from a point, with their `q` and `p`.
+    /// `None` if there is no closed form.
+    fn rim(&mut self, rim: &Rim) -> Option<()> {
+        match self.stance {
+            Stance::Upright if rim.height > self.highest => {}
+            Stance::Upright => self.upright_edge(rim),
+            // No line meets it, except in its plane.
+            Stance::Across => self.flat(rim.height, rim.radius),
+            Stance::Within => self.lying_edge(rim),
+            Stance::Level => self.level_edge(rim),
+            Stance::Other => return None,
+        }
+        Some(())
+    }
+
+    /// The lines in ranges of `p` and `q` from a point, with their `q` and `p`: what they have, or that they are open.
     fn each(
         &mut self,
         tip: [f64; 3],
-        ranges: [[f64; 2]; 2],
-        mut visit: impl FnMut(&mut Self, (usize, usize), [f64; 2]),
+        ranges: [Range; 2],
+        mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Open>,
     ) {
         let ahead = self.arc.ahead;
         let floor = Floor {
@@ -193,12 +216,41 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let lattice = self.lines.lines;
         rows(lattice, &floor, ranges, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - tip[1];
-                if lattice.asks(i, j) {
-                    visit(self, (i, j), [ahead[0] * x + ahead[1] * y, ahead[0] * y - ahead[1] * x]);
+                if !lattice.asks(i, j) {
+                    continue;
+                }
+                let (y, line) = (lattice.coordinate(1, j) - tip[1], lattice.line(i, j));
+                let place = [ahead[0] * x + ahead[1] * y, ahead[0] * y - ahead[1] * x];
+                let mark = self.lines.mark();
+                if visit(self, line, place).is_err() {
+                    self.lines.forget(mark);
+                    self.lines.open(line);
                 }
             }
         });
+    }
+
+    /// Adds a crossing, with a normal `(q, p, z)` of any length, after a share of the way.
+    fn crossing(&mut self, line: usize, z: f64, jump: i8, [q, p, up]: [f64; 3], share: f64) {
+        let [x, y] = self.arc.ahead;
+        let normal = unit(Vector3::new(x * q - y * p, y * q + x * p, up));
+        let source = (self.source)(share);
+        self.lines.crossing(line, z, jump, normal, source);
+    }
+
+    /// Half of the chord of a circle or a ball at a distance that is known up to an error. `None` beside it.
+    fn chord(&self, radius: f64, distance: f64, error: f64) -> Option<Chord> {
+        let square = (radius - distance) * (radius + distance);
+        // Coordinates that are off by this much change it by as much.
+        let doubt = 8.0 * error * (radius + error);
+        let certain = square > CERTAIN * doubt;
+        let (half, off) = if certain {
+            let half = square.sqrt();
+            (half, 2.0 * error * (1.0 + distance.abs() / half))
+        } else {
+            (0.0, ((CERTAIN + 2.0) * doubt).sqrt() + 4.0 * error)
+        };
+        (square >= -doubt).then_some(Chord { half, off, certain })
     }
 
     /// Where the velocity in a direction, that of the [`rates`](Self::rates), changes its sign: 1 if that is where the tip has gone farthest in it, −1 if it is farthest behind; and the share of the way.
@@ -213,29 +265,6 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         (top, share)
     }
 
-    /// A disc or ring with this normal along the axis: all of it where the tool is highest or lowest.
-    fn disc(&mut self, height: f64, [inner, outer]: [f64; 2], up: f64) {
-        let [before, after] = self.rates.map(|rate| up * rate < 0.0);
-        if before == after {
-            return;
-        }
-        let (top, share) = self.turn([0.0, 1.0]);
-        let change = i8::from(after) - i8::from(before);
-        let jump = if up > 0.0 { -change } else { change };
-        let [x, y, z] = self.arc.centre;
-        let z = z + height + top * self.arc.radius;
-        let (error, source) = (4.0 * self.slack, (self.source)(share));
-        let inner = if inner == 0.0 { f64::NEG_INFINITY } else { inner };
-        self.each([x, y, z], [[-outer, outer]; 2], |own, (i, j), [q, p]| {
-            let (rho, line) = ((q * q + p * p).sqrt(), own.lines.lines.line(i, j));
-            if rho > inner + error && rho < outer - error {
-                own.lines.crossing(line, z, jump, [0.0, 0.0, up as f32], source);
-            } else if rho > inner - error && rho < outer + error {
-                own.lines.open(line);
-            }
-        });
-    }
-
     /// Where a direction is on the arc, whose angle is known up to an error.
     fn place(&self, [c, s]: [f64; 2], error: f64) -> ArcPlace {
         let arc = self.arc;
@@ -244,35 +273,35 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         ArcPlace::share(turn, arc.angle.abs(), error + ROUNDING)
     }
 
-    /// The directions with a cosine that is known up to an error.
-    fn directions(&self, cosine: f64, error: f64) -> Directions {
-        self.directions_by(0, cosine, error)
+    /// The share of the way at a direction; `None` if it is not on the arc.
+    fn share(&self, direction: [f64; 2], error: f64) -> Result<Option<f64>, Open> {
+        match self.place(direction, error) {
+            ArcPlace::Outside => Ok(None),
+            ArcPlace::Near => Err(Open),
+            ArcPlace::Inside(share) => Ok(Some(share)),
+        }
     }
 
-    /// The directions with this cosine (0) or sine (1), that is known up to an error. [`Directions`] speaks of the other one.
-    fn directions_by(&self, k: usize, value: f64, error: f64) -> Directions {
+    /// Of the directions with a cosine (0) or sine (1) that is known up to an error, the other one, which has both signs, and the error of the angles. `None` if they are not on the arc.
+    fn other(&self, k: usize, value: f64, error: f64) -> Result<Option<(f64, f64)>, Open> {
         let [low, high] = self.directions[k];
         let error = error + ROUNDING;
         if value > high + error || value < low - error {
-            return Directions::None;
+            return Ok(None);
         }
         let square = (1.0 - value) * (1.0 + value);
         // The angle is off by the error over the other one, to first order.
-        if !(square > 64.0 * error) {
-            let mut extreme = [0.0; 2];
-            extreme[k] = 1.0_f64.copysign(value);
-            // The value is this far from the extreme at most, and the angle the root of twice that.
-            let wide = (2.0 * (66.0 * error)).sqrt() + ROUNDING;
-            let place = self.place(extreme, wide.min(FRAC_PI_2));
-            return Directions::Level(!matches!(place, ArcPlace::Outside));
+        if square > CERTAIN * error {
+            let other = square.sqrt();
+            return Ok(Some((other, 1.25 * error / other)));
         }
-        let other = square.sqrt();
-        Directions::Pair(other, 1.25 * error / other)
-    }
-
-    /// A direction `(q, p, z)` in space.
-    fn in_space(&self, [q, p, z]: [f64; 3]) -> [f32; 3] {
-        let [x, y] = self.arc.ahead;
-        unit(Vector3::new(x * q - y * p, y * q + x * p, z))
+        let mut extreme = [0.0; 2];
+        extreme[k] = 1.0_f64.copysign(value);
+        // The value is this far from the extreme at most, and the angle the root of twice that.
+        let wide = (2.0 * ((CERTAIN + 2.0) * error)).sqrt() + ROUNDING;
+        match self.place(extreme, wide.min(FRAC_PI_2)) {
+            ArcPlace::Outside => Ok(None),
+            ArcPlace::Near | ArcPlace::Inside(_) => Err(Open),
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::Cylinder;
 use crate::methods::turning::blocks::{around, blocks, distance};
-use crate::methods::turning::intervals::{Range, Sign, add, between, joined, mul, sub, wider};
+use crate::methods::sheets::intervals::{Range, Sign, add, between, joined, mul, sub, wider};
 use crate::methods::turning::spans::{Span, Verdict};
 use crate::methods::turning::{Leftover, Searching};
 

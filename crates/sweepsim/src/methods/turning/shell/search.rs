@@ -5,7 +5,7 @@ use crate::algebra::certain::certainly_within;
 use crate::methods::harvest::unit;
 use crate::methods::turning::axis_motion::AxisMotion;
 use crate::methods::turning::blocks::blocks;
-use crate::methods::turning::intervals::{Range, Sign};
+use crate::methods::sheets::intervals::{Range, Sign};
 use crate::methods::turning::spans::{Span, Verdict};
 use crate::methods::turning::zero::{Known, Sample, Turn, start, zero};
 use crate::methods::turning::{Leftover, Searching};
