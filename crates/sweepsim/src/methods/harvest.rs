@@ -1,7 +1,8 @@
 //! Turns preimages into crossings as they are found.
 
+use crate::methods::lattice::Lattice;
 use nalgebra::Vector3;
-use sweepsim_dexel::Crossing;
+use sweepsim_dexel::{Crossing, Source};
 use sweepsim_solve::{Cause, ChartStatistics, Preimage, Sink, UnresolvedTarget};
 
 /// A crossing and the number of its line.
@@ -14,6 +15,41 @@ pub(crate) struct Harvest {
     /// Lines with a box that could not be decided.
     pub open: Vec<(u32, Cause)>,
     pub statistics: ChartStatistics,
+}
+
+/// Collects crossings of the lines of a lattice.
+pub(crate) struct Collector<'a> {
+    pub lines: &'a Lattice<'a>,
+    pub harvest: &'a mut Harvest,
+}
+
+impl Collector<'_> {
+    #[inline]
+    pub fn crossing(&mut self, line: usize, z: f64, jump: i8, normal: [f32; 3], source: Source) {
+        let crossing = Crossing {
+            z,
+            jump,
+            normal,
+            source,
+        };
+        self.harvest.crossings.push((line as u32, crossing));
+    }
+
+    /// Leaves a line to the general method.
+    pub fn open(&mut self, line: usize) {
+        self.harvest.open.push((line as u32, Cause::Smallest));
+    }
+
+    /// The number of crossings and open lines so far.
+    pub fn mark(&self) -> [usize; 2] {
+        [self.harvest.crossings.len(), self.harvest.open.len()]
+    }
+
+    /// Drops what came after a mark.
+    pub fn forget(&mut self, [crossings, open]: [usize; 2]) {
+        self.harvest.crossings.truncate(crossings);
+        self.harvest.open.truncate(open);
+    }
 }
 
 /// The results of all searches of a chunk, in an order that does not depend on the number of threads.

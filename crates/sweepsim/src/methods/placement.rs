@@ -2,10 +2,10 @@
 
 use crate::cutter::outline::Outline;
 use crate::envelope::{JointSide, Near, OnPlaced, PlacedMap, ROOT, Twist};
-use crate::methods::harvest::{Harvest, unit};
+use crate::methods::harvest::{Collector, Harvest, unit};
 use crate::methods::method::CrossingMethod;
 use crate::methods::search::Search;
-use crate::methods::translation::{self, Collector, Neighbour};
+use crate::methods::translation::{self, Neighbour};
 use crate::methods::turning;
 use crate::methods::workspace::Workspace;
 use crate::time::over::DyadicInterval;

@@ -5,12 +5,12 @@ use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::cutter::outline::Outline;
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, PatchMap, ROOT, Size};
-use crate::methods::harvest::{Harvest, unit};
+use crate::methods::harvest::{Collector, Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
-use crate::methods::translation::{self, Ceiling, Collector, Grazed, Heading, Patches};
-use crate::methods::turning::{self, Element, Leftover, Searching};
+use crate::methods::translation::{self, Ceiling, Grazed, Heading, Patches};
+use crate::methods::turning::{self, Accuracy, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
 use crate::time::path_parts::PathPart;
@@ -173,8 +173,10 @@ impl Search<'_> {
     pub(super) fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {
         Searching {
             collector,
-            slack: translation::slack(self.size.system_rounding),
-            height_tolerance: self.height_tolerance,
+            accuracy: Accuracy {
+                slack: translation::slack(self.size.system_rounding),
+                height_tolerance: self.height_tolerance,
+            },
         }
     }
 

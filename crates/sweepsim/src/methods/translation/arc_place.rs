@@ -11,11 +11,21 @@ pub(super) enum ArcPlace<T = f64> {
 }
 
 impl<T> ArcPlace<T> {
-    /// Of a turn from the start, as a complex number of any length, on an arc by a positive angle. `error`: of the sine.
+    /// The turn on an arc from its start to its end, as a complex number.
+    pub fn end(angle: f64) -> [f64; 2] {
+        let (sine, cosine) = angle.abs().sin_cos();
+        [cosine, sine]
+    }
+
+    /// Of a turn from the start, as a complex number of any length, on an arc with this [`end`](Self::end). `error`: of the sine.
     #[inline]
-    pub fn new([cosine, sine]: [f64; 2], angle: f64, error: f64, inside: impl FnOnce() -> T) -> Self {
+    pub fn new(
+        [cosine, sine]: [f64; 2],
+        [end_cosine, end_sine]: [f64; 2],
+        error: f64,
+        inside: impl FnOnce() -> T,
+    ) -> Self {
         // Seen from the end.
-        let (end_sine, end_cosine) = angle.sin_cos();
         let end = sine * end_cosine - cosine * end_sine;
         if sine < -error || end > error {
             Self::Outside
@@ -24,13 +34,5 @@ impl<T> ArcPlace<T> {
         } else {
             Self::Near
         }
-    }
-}
-
-impl ArcPlace {
-    /// The same, with the share of the way.
-    #[inline]
-    pub fn share([cosine, sine]: [f64; 2], angle: f64, error: f64) -> Self {
-        Self::new([cosine, sine], angle, error, || sine.atan2(cosine) / angle)
     }
 }

@@ -7,12 +7,12 @@
 //!
 //! The jumps below the ceiling must add up to this number, which is as independent of them as the crossings above would be.
 
-use super::Collector;
 use super::curves::{slack, stands};
 use super::discs::Around;
-use super::rows::numbers;
 use crate::cutter::outline::{Outline, Shape};
+use crate::methods::harvest::Collector;
 use crate::methods::lattice::Lattice;
+use crate::methods::sheets::numbers;
 use crate::time::path_parts::PathPart;
 use sweepsim_dexel::Source;
 

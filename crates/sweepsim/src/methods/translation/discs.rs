@@ -1,7 +1,7 @@
 //! The lines that a disc covers while its centre moves along an arc, counted one by one.
 
-use super::Collector;
-use super::rows::numbers;
+use crate::methods::harvest::Collector;
+use crate::methods::sheets::numbers;
 use crate::time::circles::LevelArc;
 use std::f64::consts::PI;
 

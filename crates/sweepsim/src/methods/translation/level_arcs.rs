@@ -13,12 +13,12 @@
 
 mod ends;
 
+use super::Ceiling;
 use super::arc_place::ArcPlace;
 use super::curves::{Beside, Graph, Heading, Parabola, Turned, TurnedPoint, ring, slant, torus};
 use super::rows::{Row, Sector};
-use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
 use crate::time::circles::LevelArc;
 use ends::Bend;
 use std::f64::consts::PI;
@@ -49,6 +49,7 @@ pub(crate) fn sweep_level_arc(
         lines,
         source,
         side: arc.side(),
+        end: ArcPlace::<f64>::end(arc.angle),
     };
     outline.settle(&mut search, LevelArcSearch::piece, LevelArcSearch::rim, done);
 }
@@ -63,6 +64,8 @@ struct LevelArcSearch<'a, 'b, S> {
     highest: f64,
     /// `σ`.
     side: f64,
+    /// The turn to the end of the arc.
+    end: [f64; 2],
 }
 
 impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {

@@ -6,6 +6,7 @@ mod sector;
 pub(super) use sector::Sector;
 
 use crate::methods::lattice::Lattice;
+use crate::methods::sheets::numbers;
 
 /// A plane across the dexels, seen from the tip: `q` ahead, `p` to the left.
 #[derive(Clone, Copy, Debug)]
@@ -69,27 +70,6 @@ impl Band {
         }
         self.range.map(|end| (end - base) * self.inverse)
     }
-}
-
-/// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is greater than the last.
-#[inline]
-pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
-    let window = if axis == 0 { lines.i } else { lines.j };
-    let (first, density) = lines.scale(axis);
-    // A fraction of a line more, since the scale is rounded.
-    let (a, b) = (
-        ((low - first) * density - 1e-3).max(window[0] as f64),
-        ((high - first) * density + 1e-3).min(window[1] as f64),
-    );
-    // False for NaN, too.
-    if !(a <= b) {
-        return None;
-    }
-    // Both are in the window now, so casts round down.
-    // There are no more than 2³² lines.
-    let (low, b) = (a as u32, b as u32);
-    let a = low as usize + usize::from(f64::from(low) < a);
-    (a <= b as usize).then_some([a, b as usize])
 }
 
 /// Visits all lines with `p` and `q` in these ranges, and a few others.

@@ -2,10 +2,12 @@
 
 mod lanes;
 
+use super::Ceiling;
 use super::curves::{Graph, Heading, ring, slant, torus};
-use super::rows::{Floor, Row, numbers, rows};
-use super::{Ceiling, Collector};
+use super::rows::{Floor, Row, rows};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
+use crate::methods::harvest::Collector;
+use crate::methods::sheets::numbers;
 use lanes::{LANES, Lanes};
 use sweepsim_dexel::{Crossing, Source};
 

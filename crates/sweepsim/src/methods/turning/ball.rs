@@ -9,9 +9,9 @@
 //! along the line. Where the curve of the centre is less curved than the ball, `|C′|² > R |C″|`, each `G` falls wherever it is 0.
 
 use super::axis_motion::{Bounds, Moment};
-use crate::methods::sheets::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
 use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use crate::cutter::outline::Ball;
+use crate::methods::sheets::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
 use nalgebra::{Vector2, Vector3};
 
 /// A ball at one time.

@@ -11,16 +11,13 @@
 //! for heights near the one that the tool turns about.
 
 mod pivot;
-mod standing;
-
-pub(super) use standing::standing;
 
 use super::axis_motion::{AxisMotion, Bounds, Moment};
+use super::lean::Lean;
+use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use crate::methods::sheets::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
-use super::lean::Lean;
-use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use nalgebra::Vector3;
 
 /// The part of a cylinder between two heights.

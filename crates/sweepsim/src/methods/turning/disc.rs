@@ -9,13 +9,14 @@
 //! along the line. If the axis travels faster along itself than the rim turns, `F` is never 0.
 
 use super::axis_motion::{AxisMotion, Bounds, Moment};
-use super::blocks::{around, blocks, distance};
-use crate::methods::sheets::intervals::Range;
-use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Known, Sample, Turn, start, zero};
-use super::{Leftover, Searching};
+use super::{Accuracy, Searching};
+use crate::algebra::certain::certainly_within;
 use crate::methods::harvest::unit;
+use crate::methods::sheets::Undecided::{self, Close, Intricate};
+use crate::methods::sheets::intervals::Range;
+use crate::methods::sheets::{around, distance, search_lines};
 use nalgebra::Vector3;
 use sweepsim_dexel::Source;
 
@@ -77,17 +78,23 @@ impl Placed {
 }
 
 impl Disc {
+    /// Whether a line at this distance from the centre meets it, if that is certain.
+    pub fn holds(&self, radius: f64, error: f64) -> Option<bool> {
+        let [inner, outer] = self.radii;
+        certainly_within(radius, [if inner == 0.0 { -1.0 } else { inner }, outer], error)
+    }
+
     /// Settles one span of a motion, unless it is too long.
     pub fn settle(
         &self,
         (motion, span): (&AxisMotion, &Span),
-        searching: &mut Searching,
+        Searching { collector, accuracy }: &mut Searching,
         source: &impl Fn(f64) -> Source,
-        left: &mut Leftover,
     ) -> Verdict {
         let Span { from, to, bounds, .. } = span;
-        if self.keeps_its_sign([from, to], bounds, searching.slack) {
-            return Verdict::Settled;
+        let slack = accuracy.slack;
+        if self.keeps_its_sign([from, to], bounds, slack) {
+            return Verdict::Settled(Vec::new());
         }
         let steep = bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP;
         let Some(falls) = self.falls([from, to], bounds).filter(|_| !steep) else {
@@ -95,50 +102,42 @@ impl Disc {
         };
         let [a, b] = [from, to].map(|moment| Placed::new(moment, self.height));
         let sag = bounds.sag(self.height.abs() * bounds.bend);
-        let (slack, reach) = (searching.slack, self.radii[1] + sag);
+        let reach = self.radii[1] + sag + slack;
         let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
         let doubt = 16.0 * slack * (bounds.rate * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON / slack);
         let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
-        let lines = searching.collector.lines;
-        let lines_over = around(&centres, reach + slack);
         // Blocks that the disc does not reach.
-        let over = |block: [Range; 2]| (distance(block, centres) <= reach + slack).then_some(());
+        let over = |block: [Range; 2]| (distance(block, centres) <= reach).then_some(());
         let mut last = None;
-        blocks(lines, lines_over, over, |(i, j), line, ()| {
-            let ends = [a.along(&a.arm(line)), b.along(&b.arm(line))];
-            if (ends[0] >= 0.0) == (ends[1] >= 0.0) && ends.iter().all(|f| f.abs() > doubt) {
-                return;
-            }
-            if !lines.asks(i, j) {
-                return;
-            }
-            let number = lines.line(i, j);
-            let found = if ends.iter().any(|f| f.abs() <= doubt) {
-                // Only if it is over the disc.
-                let beside = [&a, &b]
-                    .iter()
-                    .all(|placed| placed.arm(line).norm() > 2.0 * self.radii[1]);
-                if beside { Ok(None) } else { Err(Undecided::Close) }
-            } else if (ends[0] > 0.0) == falls {
-                self.turn((motion, span), line, (ends, &mut last), searching)
-            } else {
-                Err(Undecided::Intricate)
-            };
-            match found {
-                Err(Undecided::Close) => searching.collector.open(number),
-                Err(Undecided::Intricate) => left.lines.push(number as u32),
-                Ok(None) => {}
-                Ok(Some(Turn { t, height, normal })) => {
+        let left = search_lines(
+            collector,
+            around(&centres, reach),
+            over,
+            |collector, number, line, ()| {
+                let ends = [a.along(&a.arm(line)), b.along(&b.arm(line))];
+                if ends.iter().any(|f| f.abs() <= doubt) {
+                    // Only if it is over the disc.
+                    let beside = |placed: &Placed| placed.arm(line).norm() > 2.0 * self.radii[1];
+                    return if beside(&a) && beside(&b) { Ok(()) } else { Err(Close) };
+                }
+                if (ends[0] >= 0.0) == (ends[1] >= 0.0) {
+                    return Ok(());
+                }
+                if (ends[0] > 0.0) != falls {
+                    return Err(Intricate);
+                }
+                if let Some(Turn { t, height, normal }) =
+                    self.turn((motion, span), line, (ends, &mut last), *accuracy)?
+                {
                     // From `g > 0` to `g < 0` if `F` falls on the upper side, or rises on the lower one.
                     let inwards = falls == (self.up > 0.0);
                     let jump = if (normal.z > 0.0) == inwards { -1 } else { 1 };
-                    searching
-                        .collector
-                        .crossing(number, height, jump, unit(normal), source(t));
+                    collector.crossing(number, height, jump, unit(normal), source(t));
                 }
-            }
-        });
-        Verdict::Settled
+                Ok(())
+            },
+        );
+        Verdict::Settled(left)
     }
 
     /// Whether `F` is certain not to be 0 on the disc.
@@ -168,10 +167,12 @@ impl Disc {
         (motion, span): (&AxisMotion, &Span),
         line: [f64; 2],
         (ends, last): ([f64; 2], &mut Option<Known>),
-        searching: &Searching,
+        Accuracy {
+            slack,
+            height_tolerance,
+        }: Accuracy,
     ) -> Result<Option<Turn>, Undecided> {
         let side = ends[0].signum();
-        let slack = searching.slack;
         let turning = span.bounds.turning();
         let bracket = [span.from.t, span.to.t];
         let first = match last.as_ref().map(|last| last.over(line)) {
@@ -207,19 +208,9 @@ impl Disc {
                     return None;
                 }
                 let error = 8.0 * (slack + speed * step.abs()) * tilt;
-                let [inner, outer] = self.radii;
-                let inner = if inner == 0.0 { -1.0 } else { inner };
-                let inside = if radius > outer + error || radius < inner - error {
-                    false
-                } else if radius < outer - error && radius > inner + error {
-                    true
-                } else {
-                    return None;
-                };
+                let inside = self.holds(radius, error)?;
                 // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
-                if inside
-                    && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= searching.height_tolerance)
-                {
+                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
                     return None;
                 }
                 let [x, y] = [0, 1].map(|k| placed.rate[k] - placed.rate.z * placed.axis[k] * placed.inverse);

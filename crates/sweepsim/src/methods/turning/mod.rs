@@ -7,7 +7,6 @@
 
 mod axis_motion;
 mod ball;
-mod blocks;
 mod cylinder;
 mod disc;
 mod lean;
@@ -17,11 +16,11 @@ mod shell;
 mod spans;
 mod zero;
 
-use crate::cutter::outline::{Ball, Outline, Piece, Shape};
-use crate::methods::translation::Collector;
+use crate::cutter::outline::{Ball, Outline, Piece, Rim, Shape};
+use crate::methods::harvest::Collector;
+use crate::methods::sheets::around;
 use axis_motion::{AxisMotion, Moment};
-use blocks::around;
-use cylinder::{Cylinder, standing};
+use cylinder::Cylinder;
 use disc::Disc;
 use resting::{Resting, RestingSide};
 use rim::RimSearch;
@@ -55,15 +54,6 @@ pub(crate) struct Leftover {
 }
 
 impl Leftover {
-    fn new(element: &Element, times: [f64; 2]) -> Self {
-        Self {
-            element: element.clone(),
-            times,
-            all: false,
-            lines: Vec::new(),
-        }
-    }
-
     /// Whether both are all lines of one element, one after the other.
     fn follows(&self, next: &Self) -> bool {
         self.all && self.element == next.element && self.times[1] == next.times[0]
@@ -73,6 +63,11 @@ impl Leftover {
 /// What all parts of a search share.
 pub(crate) struct Searching<'a, 'b> {
     pub collector: &'a mut Collector<'b>,
+    pub accuracy: Accuracy,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Accuracy {
     /// The rounding error of coordinates.
     pub slack: f64,
     /// Heights may be off by this much.
@@ -111,34 +106,32 @@ pub(crate) fn envelope(
     segment: &Segment,
     searching: &mut Searching,
     source: impl Fn(f64) -> Source,
-    [patches, edges]: [&mut [bool]; 2],
+    done: [&mut [bool]; 2],
 ) -> Vec<Leftover> {
     let mut leftovers = Vec::new();
-    let Some(motion) = AxisMotion::new(segment) else {
+    let Some(motion) = &AxisMotion::new(segment) else {
         return leftovers;
     };
-    for piece in &outline.pieces {
+    let mut search = (searching, &mut leftovers);
+    let piece = |(searching, leftovers): &mut (&mut Searching, &mut Vec<Leftover>), piece: &Piece| {
+        let kind = Kind::of(piece)?;
         let element = Element::Patches(piece.patches.clone());
-        match Kind::of(piece) {
-            Some(Kind::Ball(ball)) => ball_along(&ball, &motion, &element, &mut leftovers, searching, &source),
-            Some(Kind::Cylinder(cylinder)) => {
-                cylinder_along(&cylinder, &motion, &element, &mut leftovers, searching, &source);
-            }
-            Some(Kind::Disc(disc)) => settle(&motion, &element, &mut leftovers, |span, left| {
-                disc.settle((&motion, span), searching, &source, left)
-            }),
-            None => continue,
-        }
-        patches[piece.patches.clone()].fill(true);
-    }
-    for rim in &outline.rims {
-        let element = Element::Edges(rim.edges.clone());
-        let search = RimSearch::new(rim, &motion);
-        settle(&motion, &element, &mut leftovers, |span, left| {
-            search.settle(span, searching, &source, left)
+        settle(motion, &element, leftovers, |span| match &kind {
+            Kind::Ball(ball) => ball_along(ball, (motion, span), searching, &source),
+            Kind::Cylinder(cylinder) => cylinder_along(cylinder, (motion, span), searching, &source),
+            Kind::Disc(disc) => disc.settle((motion, span), searching, &source),
         });
-        edges[rim.edges.clone()].fill(true);
-    }
+        Some(())
+    };
+    let rim = |(searching, leftovers): &mut (&mut Searching, &mut Vec<Leftover>), rim: &Rim| {
+        let element = Element::Edges(rim.edges.clone());
+        let search = RimSearch::new(rim, motion, searching.accuracy, &source);
+        settle(motion, &element, leftovers, |span| {
+            search.settle(span, searching.collector)
+        });
+        Some(())
+    };
+    outline.settle(&mut search, piece, rim, done);
     leftovers
 }
 
@@ -154,68 +147,59 @@ fn is_far(span: &Span, height: f64, radius: f64) -> bool {
 
 fn ball_along(
     ball: &Ball,
-    motion: &AxisMotion,
-    element: &Element,
-    leftovers: &mut Vec<Leftover>,
+    (motion, span): (&AxisMotion, &Span),
     searching: &mut Searching,
     source: &impl Fn(f64) -> Source,
-) {
-    settle(motion, element, leftovers, |span, left| {
-        let ends = [&span.from, &span.to];
-        if !span.last && is_far(span, ball.centre.abs(), ball.radius) {
-            return Verdict::Long;
-        }
-        let Some(limits) = ball.limits(ends, &span.bounds, searching.slack) else {
-            return Verdict::Long;
-        };
-        let [a, b] = ends.map(|moment| ball.at(moment).level());
-        let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
-        let mut search = ShellSearch::new((ball, &limits), motion, source, left);
-        search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack))
-    });
+) -> Verdict {
+    let (ends, accuracy) = ([&span.from, &span.to], searching.accuracy);
+    if !span.last && is_far(span, ball.centre.abs(), ball.radius) {
+        return Verdict::Long;
+    }
+    let Some(limits) = ball.limits(ends, &span.bounds, accuracy.slack) else {
+        return Verdict::Long;
+    };
+    let [a, b] = ends.map(|moment| ball.at(moment).level());
+    let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
+    let mut search = ShellSearch::new((ball, &limits), motion, source, accuracy);
+    search.lines(searching, span, around(&[a, b], ball.radius + sag + accuracy.slack))
 }
 
 fn cylinder_along(
     cylinder: &Cylinder,
-    motion: &AxisMotion,
-    element: &Element,
-    leftovers: &mut Vec<Leftover>,
+    (motion, span): (&AxisMotion, &Span),
     searching: &mut Searching,
     source: &impl Fn(f64) -> Source,
-) {
-    let most = most_sag(searching, cylinder.radius);
+) -> Verdict {
+    let (ends, accuracy) = ([&span.from, &span.to], searching.accuracy);
+    let Accuracy {
+        slack,
+        height_tolerance,
+    } = accuracy;
     // Heights of points are off by the rounding error over the lean.
-    let least = (searching.slack / searching.height_tolerance).clamp(UPRIGHT, STEEP);
-    settle(motion, element, leftovers, |span, left| {
-        let ends = [&span.from, &span.to];
-        let lean = span.bounds.lean;
-        if lean[1] <= 4.0 * least {
-            return standing(cylinder, span, searching, left);
-        }
-        let Some(limits) = cylinder
-            .limits(ends, &span.bounds, searching.slack)
-            .filter(|_| lean[0] > least)
-        else {
-            return Verdict::Upright;
+    let least = (slack / height_tolerance).clamp(UPRIGHT, STEEP);
+    let lean = span.bounds.lean;
+    if lean[1] <= 4.0 * least {
+        return Verdict::Intricate;
+    }
+    let Some(limits) = cylinder.limits(ends, &span.bounds, slack).filter(|_| lean[0] > least) else {
+        return Verdict::Upright;
+    };
+    let reach = cylinder.ends[0].abs().max(cylinder.ends[1].abs());
+    if !span.last && is_far(span, 0.5 * reach, cylinder.radius) {
+        return Verdict::Long;
+    }
+    let sag = span.bounds.sag(cylinder.bow(&span.bounds));
+    if sag > most_sag(searching, cylinder.radius) {
+        return if lean[0] < STEEP {
+            Verdict::Upright
+        } else {
+            Verdict::Long
         };
-        let reach = cylinder.ends[0].abs().max(cylinder.ends[1].abs());
-        if !span.last && is_far(span, 0.5 * reach, cylinder.radius) {
-            return Verdict::Long;
-        }
-        let bow = cylinder.bow(&span.bounds);
-        let sag = span.bounds.sag(bow);
-        if sag > most {
-            return if lean[0] < STEEP {
-                Verdict::Upright
-            } else {
-                Verdict::Long
-            };
-        }
-        let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
-        let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
-        let mut search = ShellSearch::new((cylinder, &limits), motion, source, left);
-        search.lines(searching, span, around(&[a, b].concat(), wider))
-    });
+    }
+    let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
+    let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + slack;
+    let mut search = ShellSearch::new((cylinder, &limits), motion, source, accuracy);
+    search.lines(searching, span, around(&[a, b].concat(), wider))
 }
 
 /// The tool at rest at one end of a segment, of which at least one side turns. Marks what it settles as done.

@@ -2,15 +2,16 @@
 
 use super::Searching;
 use super::axis_motion::Moment;
-use super::blocks::{around, blocks, distance};
 use super::cylinder::Cylinder;
 use super::disc::{Disc, Placed};
-use crate::methods::sheets::intervals::{Range, Sign};
 use super::lean::Lean;
 use super::shell::Shell;
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
+use crate::methods::sheets::Undecided::{self, Close};
+use crate::methods::sheets::intervals::{Range, Sign};
+use crate::methods::sheets::{around, distance, search_lines};
 use nalgebra::Vector3;
 use sweepsim_dexel::Source;
 
@@ -38,50 +39,52 @@ pub(super) struct Resting<'a> {
 type Motions<S> = [Option<(<S as Shell>::Posed, <S as Shell>::Limits)>; 2];
 
 impl Resting<'_> {
+    /// The jump at a place on the upper side: where the signs of `g` seen from both sides differ, as far as these and whether it is on the piece are certain.
+    fn jump(&self, signs: [Option<bool>; 2], inside: Option<bool>) -> Result<Option<i8>, Undecided> {
+        if inside == Some(false) || signs[0].is_some() && signs[0] == signs[1] {
+            return Ok(None);
+        }
+        let (Some(before), Some(after), Some(true)) = (signs[0], signs[1], inside) else {
+            return Err(Close);
+        };
+        Ok(Some(i8::from(before) - i8::from(after)))
+    }
+
     /// A line over a ball or a cylinder.
     fn shell<S: Shell>(
         &self,
         shell: &S,
         (pose, motions): (&S::Posed, &Motions<S>),
-        (place, line): ((usize, usize), [f64; 2]),
-        searching: &mut Searching,
-    ) {
+        (number, line): (usize, [f64; 2]),
+        (collector, slack): (&mut Collector, f64),
+    ) -> Result<(), Undecided> {
         let own = shell.meet(pose, line);
         if own.half_chord_sq <= 0.0 {
-            return;
+            return Ok(());
         }
-        // The sign of `g` seen from a side, and whether it is certain.
+        // The signs of `g` seen from a side, where they are certain.
         let view = |side: usize| match (&motions[side], &self.sides[side]) {
             (Some((posed, limits)), _) => {
                 let meeting = shell.meet(posed, line);
-                let sign = |sheet: usize| (meeting.g[sheet] < 0.0, !shell.doubtful(limits, &meeting, sheet));
-                [sign(0), sign(1)]
+                [0, 1].map(|sheet| (!shell.doubtful(limits, &meeting, sheet)).then_some(meeting.g[sheet] < 0.0))
             }
-            (None, RestingSide::Beyond(negative)) => [(*negative, true); 2],
-            (None, RestingSide::Moving(_)) => [(false, false); 2],
+            (None, RestingSide::Beyond(negative)) => [Some(*negative); 2],
+            (None, RestingSide::Moving(_)) => [None; 2],
         };
         let views = [view(0), view(1)];
         for sheet in 0..2 {
-            let (before, after) = (views[0][sheet], views[1][sheet]);
-            if before.1 && after.1 && before.0 == after.0 {
+            let signs = views.map(|view| view[sheet]);
+            if signs[0].is_some() && signs[0] == signs[1] {
                 continue;
             }
-            let point = shell.point(pose, &own, (sheet, 0.0, 0.0), searching.slack);
+            let point = shell.point(pose, &own, (sheet, 0.0, 0.0), slack);
             let inside = certainly_within(point.along, shell.ends(), point.error);
-            if inside == Some(false) || !searching.collector.lines.asks(place.0, place.1) {
-                continue;
+            if let Some(jump) = self.jump(signs, inside)? {
+                let jump = if sheet == 1 { jump } else { -jump };
+                collector.crossing(number, point.height, jump, unit(point.normal), self.source);
             }
-            let number = searching.collector.lines.line(place.0, place.1);
-            if inside.is_none() || !before.1 || !after.1 {
-                searching.collector.open(number);
-                continue;
-            }
-            let change = i8::from(after.0) - i8::from(before.0);
-            let jump = if sheet == 1 { -change } else { change };
-            searching
-                .collector
-                .crossing(number, point.height, jump, unit(point.normal), self.source);
         }
+        Ok(())
     }
 
     /// The lines of a box.
@@ -92,7 +95,7 @@ impl Resting<'_> {
         area: [Range; 2],
         searching: &mut Searching,
     ) {
-        let lines = searching.collector.lines;
+        let slack = searching.accuracy.slack;
         let wanted = |block: [Range; 2]| {
             let signs = |side: usize| match (&self.sides[side], &motions[side]) {
                 (_, Some((posed, limits))) => shell.signs(limits, [posed; 2], block, 0.0),
@@ -106,8 +109,8 @@ impl Resting<'_> {
             });
             (!excluded).then_some(())
         };
-        blocks(lines, area, wanted, |place, line, ()| {
-            self.shell(shell, (pose, motions), (place, line), searching);
+        search_lines(searching.collector, area, wanted, |collector, number, line, ()| {
+            self.shell(shell, (pose, motions), (number, line), (collector, slack))
         });
     }
 
@@ -122,11 +125,11 @@ impl Resting<'_> {
         let motions = self.moving().map(|side| {
             side.map(|moment| {
                 let centre = ball.at(moment);
-                (centre, ball.at_rest(&centre, searching.slack))
+                (centre, ball.at_rest(&centre, searching.accuracy.slack))
             })
         });
         let pose = ball.at(&self.pose);
-        let area = around(&[pose.level()], ball.radius + searching.slack);
+        let area = around(&[pose.level()], ball.radius + searching.accuracy.slack);
         self.lines(ball, (&pose, &motions), area, searching);
     }
 
@@ -143,10 +146,10 @@ impl Resting<'_> {
         let motions = self.moving().map(|side| {
             side.map(|moment| {
                 let posed = cylinder.at(moment);
-                (posed, cylinder.at_rest((moment, &posed), searching.slack))
+                (posed, cylinder.at_rest((moment, &posed), searching.accuracy.slack))
             })
         });
-        let area = around(&pose.corners(cylinder.radius, cylinder.ends), searching.slack);
+        let area = around(&pose.corners(cylinder.radius, cylinder.ends), searching.accuracy.slack);
         self.lines(cylinder, (&pose, &motions), area, searching);
         true
     }
@@ -157,7 +160,7 @@ impl Resting<'_> {
         if placed.axis.z.abs() < STEEP {
             return false;
         }
-        let slack = searching.slack;
+        let slack = searching.accuracy.slack;
         let posed = self
             .moving()
             .map(|side| side.map(|moment| Placed::new(moment, disc.height)));
@@ -175,54 +178,33 @@ impl Resting<'_> {
             return true;
         }
         let centre = [placed.centre.x, placed.centre.y];
-        let lines = searching.collector.lines;
         let normal: Vector3<f64> = placed.axis * disc.up;
         let error = 8.0 * slack * (1.0 + placed.axis.z.recip().abs());
         let reach = disc.radii[1] + slack;
         let over = |block: [Range; 2]| (distance(block, [centre; 2]) <= reach).then_some(());
-        blocks(lines, around(&[centre], reach), over, |(i, j), line, ()| {
+        let visit = |collector: &mut Collector, number, line, ()| {
             let arm = placed.arm(line);
-            let radius = arm.norm();
-            let [inner, outer] = disc.radii;
-            let inner = if inner == 0.0 { -1.0 } else { inner };
-            if radius > outer + error || radius < inner - error {
-                return;
-            }
             let sign = |n: usize| match (&self.sides[n], &posed[n]) {
                 (RestingSide::Moving(_), Some(side)) => {
-                    let f = side.along(&arm);
+                    let (f, rate) = (side.along(&arm), side.rate.norm());
+                    let doubt = (error + 16.0 * slack) * rate + 16.0 * f64::EPSILON * side.travel.norm();
                     // Without a turn it is a product.
-                    let doubt = (error + 16.0 * slack) * side.rate.norm()
-                        + if side.rate.norm() == 0.0 {
-                            0.0
-                        } else {
-                            16.0 * f64::EPSILON * side.travel.norm()
-                        };
-                    (f * disc.up < 0.0, side.rate.norm() == 0.0 || f.abs() > doubt)
+                    (rate == 0.0 || f.abs() > doubt).then_some(f * disc.up < 0.0)
                 }
-                (RestingSide::Beyond(negative), _) => (*negative, true),
-                _ => (false, false),
+                (RestingSide::Beyond(negative), _) => Some(*negative),
+                _ => None,
             };
-            let signs = [sign(0), sign(1)];
-            if signs[0].1 && signs[1].1 && signs[0].0 == signs[1].0 {
-                return;
+            let inside = disc.holds(arm.norm(), error);
+            if inside != Some(false)
+                && let Some(jump) = self.jump([sign(0), sign(1)], inside)?
+            {
+                let jump = if normal.z > 0.0 { jump } else { -jump };
+                let height = placed.centre.z + arm.z;
+                collector.crossing(number, height, jump, unit(normal), self.source);
             }
-            if !lines.asks(i, j) {
-                return;
-            }
-            let number = lines.line(i, j);
-            let inside = radius < outer - error && radius > inner + error;
-            if !inside || !signs[0].1 || !signs[1].1 {
-                searching.collector.open(number);
-                return;
-            }
-            let change = i8::from(signs[1].0) - i8::from(signs[0].0);
-            let jump = if normal.z > 0.0 { -change } else { change };
-            let height = placed.centre.z + arm.z;
-            searching
-                .collector
-                .crossing(number, height, jump, unit(normal), self.source);
-        });
+            Ok(())
+        };
+        search_lines(searching.collector, around(&[centre], reach), over, visit);
         true
     }
 }

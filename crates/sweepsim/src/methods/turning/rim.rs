@@ -9,16 +9,16 @@
 //! along the line. With `e = (d, −⟨d, h⟩)`, `h = a_h/a_z`, `E″/2 = |c_h′|² − ⟨d, c_h″⟩ + f′² + f f″`, `f = ⟨d, h⟩`: where the way of the centre is straighter than the circle, seen along the dexels, `E` is
 //! convex, and the signs of `E` and its derivative at the ends of a span tell how often it is 0.
 
+use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
-use super::blocks::{around, blocks, distance};
 use super::disc::Placed;
-use crate::methods::sheets::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
-use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Known, Sample, start, zero};
-use super::{Leftover, Searching};
 use crate::cutter::outline::{Rim, fan_normal};
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
+use crate::methods::sheets::Undecided::{self, Close};
+use crate::methods::sheets::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
+use crate::methods::sheets::{around, distance, search_lines};
 use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::Source;
@@ -80,34 +80,32 @@ impl Facing {
     }
 }
 
-/// A search of a rim along a span.
-pub(super) struct RimSearch<'a> {
+/// A search of a rim along a motion.
+pub(super) struct RimSearch<'a, F> {
     rim: &'a Rim,
     motion: &'a AxisMotion,
+    accuracy: Accuracy,
+    source: F,
     /// How fast velocities turn.
     turning: f64,
     /// Where lines last came into the circle, and where they went out of it.
     last: [Cell<Option<Known>>; 2],
 }
 
-impl<'a> RimSearch<'a> {
-    pub fn new(rim: &'a Rim, motion: &'a AxisMotion) -> Self {
+impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
+    pub fn new(rim: &'a Rim, motion: &'a AxisMotion, accuracy: Accuracy, source: F) -> Self {
         Self {
             rim,
             motion,
+            accuracy,
+            source,
             turning: motion.bounds([&motion.at(0.0), &motion.at(1.0)]).turning(),
             last: Default::default(),
         }
     }
 
     /// Settles one span, unless it is too long.
-    pub fn settle(
-        &self,
-        span: &Span,
-        searching: &mut Searching,
-        source: &impl Fn(f64) -> Source,
-        left: &mut Leftover,
-    ) -> Verdict {
+    pub fn settle(&self, span: &Span, collector: &mut Collector) -> Verdict {
         let Span { from, to, bounds, .. } = span;
         if !self.is_simple([from, to], bounds) {
             // Where not even the ends are, no halves will do.
@@ -119,11 +117,10 @@ impl<'a> RimSearch<'a> {
             };
         }
         let [a, b] = [from, to].map(|moment| Placed::new(moment, self.rim.height));
-        let facing = Facing::new(self.rim, [&a, &b], bounds, searching.slack);
+        let slack = self.accuracy.slack;
+        let facing = Facing::new(self.rim, [&a, &b], bounds, slack);
         let sag = bounds.sag(self.rim.height.abs() * bounds.bend);
-        let slack = searching.slack;
         let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
-        let lines = searching.collector.lines;
         let reach = self.rim.radius + sag + slack;
         let wanted = |block: [Range; 2]| {
             // `E` is convex in space as well: all of a block is inside at both ends if its corners are.
@@ -131,32 +128,22 @@ impl<'a> RimSearch<'a> {
                 let [x, y] = block;
                 x.into_iter().all(|x| {
                     y.into_iter()
-                        .all(|y| self.value(placed, 0.0, [x, y]).square < -self.doubt(slack))
+                        .all(|y| self.value(placed, 0.0, [x, y]).square < -self.doubt())
                 })
             };
             let excluded =
                 distance(block, centres) > reach || inside(&a) && inside(&b) || facing.alike(self.rim, block);
             (!excluded).then_some(())
         };
-        blocks(lines, around(&centres, reach), wanted, |(i, j), line, ()| {
+        let visit = |collector: &mut Collector, number, line, ()| {
             let ends = [self.value(&a, from.t, line), self.value(&b, to.t, line)];
-            if ends.iter().all(|end| end.square < -self.doubt(slack)) {
-                return;
+            if ends.iter().all(|end| end.square < -self.doubt()) {
+                return Ok(());
             }
-            if !lines.asks(i, j) {
-                return;
-            }
-            let mark = searching.collector.mark();
-            if let Err(undecided) = self.between((i, j), line, ends, searching, source, 0) {
-                searching.collector.forget(mark);
-                let number = lines.line(i, j);
-                match undecided {
-                    Undecided::Close => searching.collector.open(number),
-                    Undecided::Intricate => left.lines.push(number as u32),
-                }
-            }
-        });
-        Verdict::Settled
+            self.between((number, line), ends, collector, 0)
+        };
+        let left = search_lines(collector, around(&centres, reach), wanted, visit);
+        Verdict::Settled(left)
     }
 
     /// Whether the plane of the circle is never steep, and `E` convex.
@@ -165,8 +152,8 @@ impl<'a> RimSearch<'a> {
     }
 
     /// Of `E`.
-    fn doubt(&self, slack: f64) -> f64 {
-        16.0 * slack * self.rim.radius / STEEP
+    fn doubt(&self) -> f64 {
+        16.0 * self.accuracy.slack * self.rim.radius / STEEP
     }
 
     /// Whether `E` is convex for all lines over the disc at any time of the span.
@@ -200,21 +187,19 @@ impl<'a> RimSearch<'a> {
 
     fn between(
         &self,
-        place: (usize, usize),
-        line: [f64; 2],
+        line: (usize, [f64; 2]),
         [from, to]: [Value; 2],
-        searching: &mut Searching,
-        source: &impl Fn(f64) -> Source,
+        collector: &mut Collector,
         depth: u32,
     ) -> Result<(), Undecided> {
-        let doubt = self.doubt(searching.slack);
+        let doubt = self.doubt();
         if from.square.abs() <= doubt || to.square.abs() <= doubt {
-            return Err(Undecided::Close);
+            return Err(Close);
         }
         match (from.square < 0.0, to.square < 0.0) {
             (true, true) => Ok(()),
-            (true, false) => self.pass(place, line, [from, to], -1.0, searching, source),
-            (false, true) => self.pass(place, line, [from, to], 1.0, searching, source),
+            (true, false) => self.pass(line, [from, to], -1.0, collector),
+            (false, true) => self.pass(line, [from, to], 1.0, collector),
             (false, false) => {
                 // Above both tangents.
                 let (a, b) = (2.0 * from.half, 2.0 * to.half);
@@ -227,7 +212,7 @@ impl<'a> RimSearch<'a> {
                     return Ok(());
                 }
                 if depth == DEEPEST {
-                    return Err(Undecided::Close);
+                    return Err(Close);
                 }
                 // NaN is in the middle.
                 let t = if crossing > from.t && crossing < to.t {
@@ -236,9 +221,9 @@ impl<'a> RimSearch<'a> {
                     0.5 * (from.t + to.t)
                 };
                 let placed = Placed::new(&self.motion.at(t), self.rim.height);
-                let middle = self.value(&placed, t, line);
-                self.between(place, line, [from, middle], searching, source, depth + 1)?;
-                self.between(place, line, [middle, to], searching, source, depth + 1)
+                let middle = self.value(&placed, t, line.1);
+                self.between(line, [from, middle], collector, depth + 1)?;
+                self.between(line, [middle, to], collector, depth + 1)
             }
         }
     }
@@ -246,14 +231,15 @@ impl<'a> RimSearch<'a> {
     /// The only place where a line passes the circle: into it if `inwards` is 1, out of it if it is −1.
     fn pass(
         &self,
-        (i, j): (usize, usize),
-        line: [f64; 2],
+        (number, line): (usize, [f64; 2]),
         ends: [Value; 2],
         inwards: f64,
-        searching: &mut Searching,
-        source: &impl Fn(f64) -> Source,
+        collector: &mut Collector,
     ) -> Result<(), Undecided> {
-        let slack = searching.slack;
+        let Accuracy {
+            slack,
+            height_tolerance,
+        } = self.accuracy;
         let before = &self.last[usize::from(inwards < 0.0)];
         let last = before.get();
         let bracket = ends.map(|end| end.t);
@@ -302,7 +288,7 @@ impl<'a> RimSearch<'a> {
                 }
                 let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
                 let rest = turned * turned * (sample.rise.abs() + fast.abs()) * step.abs();
-                if !(alike || turned <= TURNED && 2.0 * rest <= searching.height_tolerance) {
+                if !(alike || turned <= TURNED && 2.0 * rest <= height_tolerance) {
                     return None;
                 }
                 let height = self.rim.height;
@@ -344,10 +330,7 @@ impl<'a> RimSearch<'a> {
         // The turn of the circle about the tool, from below to above along the meridian, is that of its disc.
         let orientation = if (up > 0.0) == (inwards < 0.0) { 1 } else { -1 };
         let jump = if a < 0.0 { -orientation } else { orientation };
-        let number = searching.collector.lines.line(i, j);
-        searching
-            .collector
-            .crossing(number, height, jump, unit(normal), source(t));
+        collector.crossing(number, height, jump, unit(normal), (self.source)(t));
         Ok(())
     }
 }

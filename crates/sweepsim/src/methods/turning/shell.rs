@@ -122,15 +122,6 @@ pub(super) trait Shell {
     }
 }
 
-/// What is not decided about a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Undecided {
-    /// Closer than rounding errors: it has to be displaced.
-    Close,
-    /// Charts can tell.
-    Intricate,
-}
-
 #[cfg(test)]
 mod accuracy;
 #[cfg(test)]

@@ -19,9 +19,10 @@ pub(super) struct Span {
 }
 
 /// What becomes of a span.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    Settled,
+    /// But for some lines, which charts have to solve.
+    Settled(Vec<u32>),
     /// It is too long, or charts have to solve it.
     Long,
     /// It is too long, since the axis is almost upright on the way: halves lean half as much, or their axis turns about the vertical half as much.
@@ -35,7 +36,7 @@ pub(super) fn settle(
     motion: &AxisMotion,
     element: &Element,
     leftovers: &mut Vec<Leftover>,
-    mut settle: impl FnMut(&Span, &mut Leftover) -> Verdict,
+    mut settle: impl FnMut(&Span) -> Verdict,
 ) {
     // In the order of time: halves are put back, the later one first.
     let mut spans = vec![(motion.at(0.0), motion.at(1.0), 0)];
@@ -46,25 +47,32 @@ pub(super) fn settle(
             bounds: motion.bounds([&from, &to]),
             last: depth >= DEEPEST,
         };
-        let mut left = Leftover::new(element, [from.t, to.t]);
-        let verdict = settle(&span, &mut left);
-        let deepest = if verdict == Verdict::Upright {
-            DEEPEST_UPRIGHT
-        } else {
-            DEEPEST
+        let left = |all: bool, lines: Vec<u32>| Leftover {
+            element: element.clone(),
+            times: [from.t, to.t],
+            all,
+            lines,
+        };
+        let verdict = settle(&span);
+        let deepest = match verdict {
+            Verdict::Upright => DEEPEST_UPRIGHT,
+            _ => DEEPEST,
         };
         match verdict {
-            Verdict::Settled if left.lines.is_empty() => {}
-            Verdict::Settled => leftovers.push(left),
+            Verdict::Settled(lines) if lines.is_empty() => {}
+            Verdict::Settled(lines) => leftovers.push(left(false, lines)),
             Verdict::Long | Verdict::Upright if depth < deepest => {
                 let middle = motion.at(0.5 * (from.t + to.t));
                 spans.push((middle, to, depth + 1));
                 spans.push((from, middle, depth + 1));
             }
-            Verdict::Long | Verdict::Upright | Verdict::Intricate => match leftovers.last_mut() {
-                Some(before) if before.follows(&left) => before.times[1] = to.t,
-                _ => leftovers.push(Leftover { all: true, ..left }),
-            },
+            Verdict::Long | Verdict::Upright | Verdict::Intricate => {
+                let left = left(true, Vec::new());
+                match leftovers.last_mut() {
+                    Some(before) if before.follows(&left) => before.times[1] = to.t,
+                    _ => leftovers.push(left),
+                }
+            }
         }
     }
 }

@@ -1,10 +1,7 @@
 //! The only zero of a function in a bracket.
 
-use super::shell::Undecided;
+use crate::methods::sheets::{Undecided, halfway, newton};
 use nalgebra::Vector3;
-
-/// Steps of Newton's method, or halvings of a bracket.
-const STEPS: usize = 60;
 
 /// A function at one time.
 pub(super) struct Sample<T> {
@@ -105,41 +102,25 @@ pub(super) fn start(bracket: [f64; 2], ends: [Option<[f64; 2]>; 2]) -> f64 {
 /// `done(time, step, sample)` is asked for the result before each step to a time, and refuses as long as steps have to become smaller.
 #[inline]
 pub(super) fn zero<T, R>(
-    mut bracket: [f64; 2],
+    bracket: [f64; 2],
     (there, start): ([bool; 2], f64),
     mut at: impl FnMut(f64) -> Option<Sample<T>>,
     mut done: impl FnMut(f64, f64, &Sample<T>) -> Option<R>,
 ) -> Result<R, Undecided> {
-    let mut t = start;
-    // NaN is outside.
-    if !(t > bracket[0] && t < bracket[1]) {
-        t = 0.5 * (bracket[0] + bracket[1]);
-    }
-    for _ in 0..STEPS {
-        let Some(sample) = at(t) else {
-            bracket[usize::from(there[0])] = t;
-            t = 0.5 * (bracket[0] + bracket[1]);
-            continue;
-        };
-        bracket[usize::from(sample.value < 0.0)] = t;
-        let step = -sample.value / sample.slope;
-        let next = t + step;
+    // As if it had its sign at the end beyond which it does not exist.
+    let beyond = if there[0] { -1.0 } else { 1.0 };
+    let at = |t: f64| match at(t) {
+        Some(sample) => (sample.value, sample.value / sample.slope, Some(sample)),
+        None => (beyond, f64::NAN, None),
+    };
+    let done = |t: f64, step: f64, sample: &Option<Sample<T>>, [a, b]: [f64; 2]| {
+        let next = t - step;
         // NaN is outside.
-        if !(next >= bracket[0] && next <= bracket[1]) {
-            let middle = 0.5 * (bracket[0] + bracket[1]);
-            if middle <= bracket[0] || middle >= bracket[1] {
-                return Err(Undecided::Close);
-            }
-            t = middle;
-            continue;
-        }
-        if let Some(result) = done(next, step, &sample) {
-            return Ok(result);
-        }
-        if step.abs() <= f64::EPSILON || next == t {
-            return Err(Undecided::Close);
-        }
-        t = next;
-    }
-    Err(Undecided::Close)
+        let inside = next >= a && next <= b;
+        sample
+            .as_ref()
+            .filter(|_| inside)
+            .and_then(|sample| done(next, -step, sample))
+    };
+    newton(bracket, (false, start), halfway, at, done).ok_or(Undecided::Close)
 }

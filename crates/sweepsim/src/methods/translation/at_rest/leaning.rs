@@ -10,7 +10,6 @@
 //! with one unknown, `a`. On a line of the meridian, `n_ρ ρ + n_ζ ζ = w`, so `(n_ρ s)² (a² + b²) = (u − n_ζ k a)²` with `u = s w − n_ζ q`. The slope of
 //! `n_ρ ρ + n_ζ ζ` along the dexel is that of the normal, `n_z`, by which all errors are divided.
 
-use super::super::Collector;
 use super::super::curves::{Heading, Local};
 use super::super::rows::{Floor, Row, rows};
 use super::Neighbour;
@@ -18,7 +17,7 @@ use super::cone_sign_changes::wedges;
 use super::cones::Cone;
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Outline, Piece, Shape};
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
 use nalgebra::Matrix3;
 use sweepsim_dexel::Source;
 

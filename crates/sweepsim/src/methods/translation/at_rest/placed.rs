@@ -1,13 +1,13 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
+use super::super::Ceiling;
 use super::super::curves::stands;
-use super::super::rows::numbers;
-use super::super::{Ceiling, Collector};
 use super::ball_sign_changes::Lune;
 use super::radial::{Hypot, Radial, Stretch, StretchPoint};
 use crate::cutter::outline::{Monotone, Outline, Piece, Shape};
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
+use crate::methods::sheets::numbers;
 use crate::time::path_parts::PathPart;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::SegmentEnd;

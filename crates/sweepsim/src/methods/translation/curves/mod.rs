@@ -2,7 +2,6 @@
 
 mod graph;
 mod heading;
-mod newton;
 mod parabola;
 pub(crate) mod ring;
 mod ring_about;

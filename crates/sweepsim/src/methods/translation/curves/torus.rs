@@ -11,7 +11,7 @@
 
 use super::Heading;
 use super::graph::{End, Graph, GraphPoint, Turned};
-use super::newton::{middle, newton};
+use crate::methods::sheets::{middle, newton};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Steps of many values together, after which those that have not converged are left to the other way.
@@ -165,7 +165,7 @@ impl Torus {
             let rate = 2.0 * (steep / e + flat * flat * radius / rho);
             (value, value / rate, ())
         };
-        let done = |e: f64, step: f64, (), [a, b]: [f64; 2]| {
+        let done = |e: f64, step: f64, (): &(), [a, b]: [f64; 2]| {
             let next = e - step;
             if (next - e).abs() <= 4.0 * f64::EPSILON * e {
                 return Some(next.clamp(first, last));

@@ -1,9 +1,9 @@
 //! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
 
 use super::graph::TurnedPoint;
-use super::newton::{STEPS, middle, newton};
 use super::ring_about::Beside;
 use super::torus::Torus;
+use crate::methods::sheets::{STEPS, middle, newton};
 
 /// Where `|e|` is greater than this, `1 − |e|` has more digits.
 const WIDE: f64 = 0.5;
@@ -115,7 +115,7 @@ impl Torus {
             let step = value / (2.0 * out * outwards + rho * (rho * turn - 2.0 * bulge * bend));
             (value, step, [e, rho, w, out, outwards])
         };
-        let done = |u: f64, step: f64, [e, rho, w, out, outwards]: [f64; 5], [a, b]: [f64; 2]| {
+        let done = |u: f64, step: f64, &[e, rho, w, out, outwards]: &[f64; 5], [a, b]: [f64; 2]| {
             (step.abs() <= 4.0 * f64::EPSILON * u || b - a <= 2.0 * f64::EPSILON * b).then(|| {
                 let f = self.signs[1] * (u * (2.0 - u)).sqrt();
                 let point = self.point(rho, [e, f], w);
@@ -166,7 +166,7 @@ impl Torus {
             let rate = sign * seen(e)[0] * by + rho * square * (bulge + offset / cube);
             (value, -value / (2.0 * rate), value)
         };
-        let done = |e: f64, step: f64, value: f64, [a, b]: [f64; 2]| {
+        let done = |e: f64, step: f64, value: &f64, [a, b]: [f64; 2]| {
             let next = e - step;
             let is_last = value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e;
             (is_last || b - a <= 2.0 * f64::EPSILON * b).then(|| {

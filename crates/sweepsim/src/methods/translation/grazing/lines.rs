@@ -1,11 +1,11 @@
 //! The lines over a chart: one unknown, `p`, for all of them.
 
-use super::super::Collector;
 use super::chart::{Chart, Region, Witness};
 use super::directed_motion::DirectedMotion;
 use super::face::{Face, Sight};
 use super::knot::{Knot, KnownLine, Quintic};
 use super::span::{Graph, Known, Span, Spans, is_absent};
+use crate::methods::harvest::Collector;
 use sweepsim_dexel::Source;
 
 /// The last step is never longer than this.

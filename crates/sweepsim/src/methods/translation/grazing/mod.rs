@@ -13,9 +13,10 @@ mod span;
 mod tree;
 mod walk;
 
-use super::{Ceiling, Collector};
+use super::Ceiling;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::methods::harvest::Collector;
 use directed_motion::{DirectedMotion, Directions, Key};
 use face::Face;
 use lines::{Lines, Target};

@@ -105,6 +105,6 @@ impl<S: Fn(f64) -> Source> LevelArcSearch<'_, '_, S> {
         // The angle from the point to the line, as a complex number.
         let c = own[0] * out + own[1] * ahead;
         let n = own[1] * out - own[0] * ahead;
-        ArcPlace::new([c, n], self.arc.angle.abs(), error * s, || [c / s, n / s])
+        ArcPlace::new([c, n], self.end, error * s, || [c / s, n / s])
     }
 }

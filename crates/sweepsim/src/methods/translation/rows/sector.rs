@@ -1,7 +1,8 @@
 //! The lines in a sector about the centre of an arc.
 
-use super::{Band, Row, numbers};
+use super::{Band, Row};
 use crate::methods::lattice::Lattice;
+use crate::methods::sheets::numbers;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The part of a ring about a centre between two directions.

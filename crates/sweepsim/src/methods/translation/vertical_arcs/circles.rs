@@ -1,9 +1,9 @@
 //! What has a circle in the section of a line by a plane along the arc: balls, and all of a tool whose axis is perpendicular to the arc's plane. It sweeps two circles about the arc's centre.
 
-use super::roots::Open;
 use super::{Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Ball, Piece};
+use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, mul, scaled, wider};
 use crate::methods::translation::stretches::Stretch;
 use sweepsim_dexel::Source;
@@ -15,12 +15,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         &mut self,
         q: f64,
         (s, off): (f64, f64),
-        mut visit: impl FnMut(&mut Self, [f64; 2], f64) -> Result<(), Open>,
-    ) -> Result<(), Open> {
+        mut visit: impl FnMut(&mut Self, [f64; 2], f64) -> Result<(), Undecided>,
+    ) -> Result<(), Undecided> {
         if !(s.abs() > 16.0 * off) {
             // About a point.
             return if q.abs() <= s.abs() + 32.0 * off {
-                Err(Open)
+                Err(Close)
             } else {
                 Ok(())
             };
@@ -71,7 +71,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                         return Ok(());
                     };
                     if inside.is_none() || !certain {
-                        return Err(Open);
+                        return Err(Close);
                     }
                     let jump = if (normal[2] > 0.0) == (s > 0.0) { -1 } else { 1 };
                     own.crossing(line, middle[2] + s * sine, jump, normal, share);
@@ -105,14 +105,14 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             let ring = match (inside, stretch.at(height, slack)) {
                 (Some(false), _) => return Ok(()),
                 (Some(true), Some(ring)) => ring,
-                _ if q >= swept[0] - wide && q <= swept[1] + wide => return Err(Open),
+                _ if q >= swept[0] - wide && q <= swept[1] + wide => return Err(Close),
                 _ => return Ok(()),
             };
             let off = 2.0 * slack * (2.0 + ring.rate);
             let s = arc.radius + side * ring.radius;
             // Next to the axis.
             if !(ring.radius > 16.0 * off) && q.abs() <= s.abs() + 32.0 * off {
-                return Err(Open);
+                return Err(Close);
             }
             own.circle(q, (s, off), |own, [c, sine], error| {
                 let Some(share) = own.share([c, sine], error)? else {
@@ -138,7 +138,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         self.each(self.arc.centre, ranges, |_, _, [q, p]| {
             let along = (p - place).abs() <= wide;
             if along && q >= ranges[1][0] - wide && q <= ranges[1][1] + wide {
-                Err(Open)
+                Err(Close)
             } else {
                 Ok(())
             }

@@ -1,8 +1,8 @@
 //! Sharp edges along an arc: a line passes a circle about the tool's axis where it meets its plane at the radius from its centre.
 
-use super::roots::Open;
 use super::{Chord, Rolling};
 use crate::cutter::outline::Rim;
+use crate::methods::sheets::Undecided::{self, Close};
 use sweepsim_dexel::Source;
 
 /// A place on a sharp edge.
@@ -111,7 +111,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     #[inline]
-    fn edge(&mut self, rim: &Rim, line: usize, point: &EdgePoint) -> Result<(), Open> {
+    fn edge(&mut self, rim: &Rim, line: usize, point: &EdgePoint) -> Result<(), Undecided> {
         let EdgePoint {
             arm,
             off,
@@ -123,7 +123,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             return Ok(());
         };
         if !point.certain {
-            return Err(Open);
+            return Err(Close);
         }
         let side = self.arc.side();
         let velocity = if self.arc.level {
@@ -135,7 +135,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let along_velocity = |a: [f64; 3]| a[0] * velocity[0] + a[1] * velocity[1] + a[2] * velocity[2];
         let (out, along) = (along_velocity(arm) / rim.radius, along_velocity(axis));
         let doubt = 2.0 * (off / rim.radius + error) + 16.0 * f64::EPSILON;
-        let Some(([radial, axial], first)) = rim.envelope([out, along], doubt).ok_or(Open)? else {
+        let Some(([radial, axial], first)) = rim.envelope([out, along], doubt).ok_or(Close)? else {
             return Ok(());
         };
         // That of the edge, the velocity and the dexels.

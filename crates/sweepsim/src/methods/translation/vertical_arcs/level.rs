@@ -4,12 +4,13 @@
 //! `x = q − r cos θ` and at the height `ζ = p − r sin θ`. The tool covers it as far as `y² = ρ² − x²` on both sides of the plane, and where `y` is extreme in time, there is the envelope: the jump is the
 //! sign of the second derivative of the height.
 
-use super::crosswise::{CrosswisePoint, Crossing};
+use super::crosswise::{Crossing, CrosswisePoint};
 use super::quarter::Quarter;
-use super::roots::{Open, Root, Search};
+use super::roots::{Root, Search};
 use super::{CERTAIN, Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
+use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, scaled};
 use sweepsim_dexel::Source;
 
@@ -29,7 +30,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         &mut self,
         radius: f64,
         [low, high]: Range,
-        visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Open>,
+        visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Undecided>,
     ) {
         let r = self.arc.radius;
         let [q, p] = self.directions.map(|range| range.map(|c| r * c));
@@ -58,7 +59,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             let error = 4.0 * slack / distance;
             if !(error < 1e-3) {
                 // The centre of the arc.
-                return if r < big + 8.0 * slack { Err(Open) } else { Ok(()) };
+                return if r < big + 8.0 * slack { Err(Close) } else { Ok(()) };
             }
             for side in [1.0, -1.0] {
                 let direction = [side * q / distance, side * p / distance];
@@ -70,10 +71,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                     continue;
                 };
                 if !certain {
-                    return Err(Open);
+                    return Err(Close);
                 }
                 let normal = [direction[0] * side * off, direction[1] * side * off, half];
-                if certainly_within(normal[1], ball.ends, 4.0 * slack + r * error).ok_or(Open)? {
+                if certainly_within(normal[1], ball.ends, 4.0 * slack + r * error).ok_or(Close)? {
                     let jump = if side > 0.0 { -1 } else { 1 };
                     own.faces(line, &Face { half, normal, jump }, share);
                 }
@@ -92,12 +93,13 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             let Some((top, share)) = turn else { return Ok(()) };
             let x = q - top * own.arc.radius;
             let inside = certainly_within(p, heights, wide);
-            let Some(Chord { half, certain, .. }) = own.chord(radius, x, slack).filter(|_| inside != Some(false)) else {
+            let Some(Chord { half, certain, .. }) = own.chord(radius, x, slack).filter(|_| inside != Some(false))
+            else {
                 return Ok(());
             };
             // Next to the axis, the sign of `g` is open.
             if inside.is_none() || !certain || !(x.abs() > wide) {
-                return Err(Open);
+                return Err(Close);
             }
             // `g` has the sign of `x` times the rate.
             let jump = if (x > 0.0) == before { 1 } else { -1 };
@@ -108,7 +110,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// Where a line is in the plane of the axis and the dexels.
-    fn widest(&mut self, line: usize, [q, p]: [f64; 2], (half, heights, out): (f64, Range, f64)) -> Result<(), Open> {
+    fn widest(
+        &mut self,
+        line: usize,
+        [q, p]: [f64; 2],
+        (half, heights, out): (f64, Range, f64),
+    ) -> Result<(), Undecided> {
         let (r, slack) = (self.arc.radius, self.slack);
         let Some((sine, error)) = self.other(0, q / r, 4.0 * slack / r)? else {
             return Ok(());
@@ -119,7 +126,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 continue;
             }
             if let Some(share) = self.share([q / r, sine], error)? {
-                inside.ok_or(Open)?;
+                inside.ok_or(Close)?;
                 let (normal, jump) = ([0.0, 0.0, out], -1);
                 self.faces(line, &Face { half, normal, jump }, share);
             }
@@ -151,7 +158,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// Where what is covered over a line is extreme.
-    fn extreme(&mut self, line: usize, crossing: &Crossing, root: Root<CrosswisePoint>) -> Result<(), Open> {
+    fn extreme(&mut self, line: usize, crossing: &Crossing, root: Root<CrosswisePoint>) -> Result<(), Undecided> {
         let Root { at, error, grows } = root;
         let (square, doubt) = crossing.square(&at);
         if square < -doubt {
@@ -161,7 +168,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             return Ok(());
         };
         if !(square > CERTAIN * doubt) {
-            return Err(Open);
+            return Err(Close);
         }
         let half = square.sqrt();
         let normal = crossing.normal(&at, half);

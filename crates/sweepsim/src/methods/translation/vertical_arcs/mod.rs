@@ -21,16 +21,16 @@ mod roots;
 mod section;
 mod walls;
 
+use super::Ceiling;
 use super::arc_place::ArcPlace;
 use super::rows::{Floor, Row, rows};
-use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use crate::methods::harvest::unit;
+use crate::methods::harvest::{Collector, unit};
+use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, hull};
 use crate::time::circles::VerticalArc;
 use nalgebra::Vector3;
 use quarter::Quarter;
-use roots::Open;
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
@@ -63,6 +63,7 @@ pub(crate) fn sweep_vertical_arc(
     let mut rolling = Rolling {
         arc,
         slack,
+        end: ArcPlace::<f64>::end(arc.angle),
         axis: own,
         stance: match own {
             _ if arc.level => Stance::Level,
@@ -104,6 +105,8 @@ struct Rolling<'a, 'b, S> {
     arc: &'a VerticalArc,
     /// The rounding error of coordinates.
     slack: f64,
+    /// The turn to its end.
+    end: [f64; 2],
     /// The tool's axis, `(q, p, z)`.
     axis: [f64; 3],
     stance: Stance,
@@ -205,7 +208,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         &mut self,
         tip: [f64; 3],
         ranges: [Range; 2],
-        mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Open>,
+        mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Undecided>,
     ) {
         let ahead = self.arc.ahead;
         let floor = Floor {
@@ -269,21 +272,22 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     fn place(&self, [c, s]: [f64; 2], error: f64) -> ArcPlace {
         let arc = self.arc;
         let ([x, y], side) = (arc.from, arc.side());
-        let turn = [c * x + s * y, side * (s * x - c * y)];
-        ArcPlace::share(turn, arc.angle.abs(), error + ROUNDING)
+        let [cosine, sine] = [c * x + s * y, side * (s * x - c * y)];
+        let share = || sine.atan2(cosine) / arc.angle.abs();
+        ArcPlace::new([cosine, sine], self.end, error + ROUNDING, share)
     }
 
     /// The share of the way at a direction; `None` if it is not on the arc.
-    fn share(&self, direction: [f64; 2], error: f64) -> Result<Option<f64>, Open> {
+    fn share(&self, direction: [f64; 2], error: f64) -> Result<Option<f64>, Undecided> {
         match self.place(direction, error) {
             ArcPlace::Outside => Ok(None),
-            ArcPlace::Near => Err(Open),
+            ArcPlace::Near => Err(Close),
             ArcPlace::Inside(share) => Ok(Some(share)),
         }
     }
 
     /// Of the directions with a cosine (0) or sine (1) that is known up to an error, the other one, which has both signs, and the error of the angles. `None` if they are not on the arc.
-    fn other(&self, k: usize, value: f64, error: f64) -> Result<Option<(f64, f64)>, Open> {
+    fn other(&self, k: usize, value: f64, error: f64) -> Result<Option<(f64, f64)>, Undecided> {
         let [low, high] = self.directions[k];
         let error = error + ROUNDING;
         if value > high + error || value < low - error {
@@ -301,7 +305,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let wide = (2.0 * ((CERTAIN + 2.0) * error)).sqrt() + ROUNDING;
         match self.place(extreme, wide.min(FRAC_PI_2)) {
             ArcPlace::Outside => Ok(None),
-            ArcPlace::Near | ArcPlace::Inside(_) => Err(Open),
+            ArcPlace::Near | ArcPlace::Inside(_) => Err(Close),
         }
     }
 }

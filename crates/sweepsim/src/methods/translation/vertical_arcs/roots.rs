@@ -1,14 +1,12 @@
 //! The solutions of `Q(x) = y` for a curve parallel to a section: there is one where `Q′` has one sign, and the values at both ends are on different sides.
 
+use crate::methods::sheets::Undecided::{self, Close};
+use crate::methods::sheets::{halfway, newton};
+
 /// Stretches are halved so many times at most,
 const HALVINGS: usize = 30;
 /// and there are so many for one line.
 const STRETCHES: usize = 240;
-/// Steps of Newton's method or halvings of a bracket.
-const STEPS: usize = 64;
-
-/// What is left to the general method.
-pub(super) struct Open;
 
 /// A solution.
 pub(super) struct Root<P> {
@@ -96,8 +94,8 @@ impl<C: Curve> Search<C> {
         &self,
         [from, to]: [[f64; 2]; 2],
         clip: [f64; 2],
-        mut found: impl FnMut(Root<C::Point>) -> Result<(), Open>,
-    ) -> Result<(), Open> {
+        mut found: impl FnMut(Root<C::Point>) -> Result<(), Undecided>,
+    ) -> Result<(), Undecided> {
         let all = [from[0].max(clip[0]), to[1].min(clip[1])];
         if !(all[0] <= all[1]) {
             return Ok(());
@@ -106,7 +104,7 @@ impl<C: Curve> Search<C> {
         let [first, last] = all.map(|x| self.curve.at(x));
         if !(sure[0] < sure[1]) {
             return if self.may_meet([&first, &last]) {
-                Err(Open)
+                Err(Close)
             } else {
                 Ok(())
             };
@@ -122,7 +120,7 @@ impl<C: Curve> Search<C> {
                 self.may_meet([beyond, end])
             };
             if uncertain {
-                return Err(Open);
+                return Err(Close);
             }
         }
         let mut stretches = 0;
@@ -134,8 +132,8 @@ impl<C: Curve> Search<C> {
         &self,
         [a, b]: [&C::Point; 2],
         (depth, stretches): (usize, &mut usize),
-        found: &mut impl FnMut(Root<C::Point>) -> Result<(), Open>,
-    ) -> Result<(), Open> {
+        found: &mut impl FnMut(Root<C::Point>) -> Result<(), Undecided>,
+    ) -> Result<(), Undecided> {
         let bounds = self.curve.bounds([a, b]);
         let [low, high] = bounds.slope;
         let differ = self.before(a) != self.before(b);
@@ -145,9 +143,9 @@ impl<C: Curve> Search<C> {
                 return Ok(());
             }
             if (b.value() > a.value()) != grows {
-                return Err(Open);
+                return Err(Close);
             }
-            let at = self.solve([*a, *b]);
+            let at = self.solve([a, b]).ok_or(Close)?;
             let error = (bounds.error + (at.value() - self.y).abs()) / low.abs().min(high.abs());
             return found(Root { at, error, grows });
         }
@@ -160,7 +158,7 @@ impl<C: Curve> Search<C> {
         }
         *stretches += 1;
         if depth == HALVINGS || *stretches > STRETCHES {
-            return Err(Open);
+            return Err(Close);
         }
         let middle = self.curve.at(0.5 * (a.unknown() + b.unknown()));
         self.between([a, &middle], (depth + 1, stretches), found)?;
@@ -168,33 +166,21 @@ impl<C: Curve> Search<C> {
     }
 
     /// The solution between two places on different sides.
-    fn solve(&self, [mut a, mut b]: [C::Point; 2]) -> C::Point {
+    fn solve(&self, [a, b]: [&C::Point; 2]) -> Option<C::Point> {
         let enough = 0.25 * self.curve.slack();
+        let ends = [a.unknown(), b.unknown()];
         let share = (self.y - a.value()) / (b.value() - a.value());
-        let mut at = self
-            .curve
-            .at(a.unknown() + (b.unknown() - a.unknown()) * share.clamp(0.0, 1.0));
-        for _ in 0..STEPS {
-            if (at.value() - self.y).abs() <= enough {
-                break;
-            }
-            if self.before(&at) == self.before(&a) {
-                a = at;
-            } else {
-                b = at;
-            }
-            let step = at.unknown() - (at.value() - self.y) / self.curve.slope(&at);
-            // NaN is outside.
-            let next = if step > a.unknown() && step < b.unknown() {
-                step
-            } else {
-                0.5 * (a.unknown() + b.unknown())
-            };
-            if !(next > a.unknown() && next < b.unknown()) {
-                break;
-            }
-            at = self.curve.at(next);
-        }
-        at
+        let at = |x: f64| {
+            let at = self.curve.at(x);
+            let value = at.value() - self.y;
+            (value, value / self.curve.slope(&at), at)
+        };
+        let done = |_, _, at: &C::Point, [a, b]: [f64; 2]| {
+            let middle = halfway(a, b);
+            let is_last = (at.value() - self.y).abs() <= enough || !(middle > a && middle < b);
+            is_last.then_some(*at)
+        };
+        let start = ends[0] + (ends[1] - ends[0]) * share;
+        newton(ends, (b.value() > a.value(), start), halfway, at, done)
     }
 }

@@ -4,8 +4,9 @@
 //! The unknown is what is horizontal: `v`, ahead of the axis of an upright tool or, mirrored, behind it; or the height along the axis of one that lies, whose section has two halves, mirror images of each other.
 
 use super::quarter::{MeridianPoint, Quarter};
-use super::roots::{Bounds, Curve, CurvePoint, Open, Root, Search};
+use super::roots::{Bounds, Curve, CurvePoint, Root, Search};
 use super::{ROUNDING, Rolling};
+use crate::methods::sheets::Undecided;
 use crate::methods::sheets::intervals::{Range, hull, scaled};
 use sweepsim_dexel::Source;
 
@@ -215,7 +216,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     #[inline]
-    fn over(&mut self, section: Section, q: f64, line: usize) -> Result<(), Open> {
+    fn over(&mut self, section: Section, q: f64, line: usize) -> Result<(), Undecided> {
         let Section {
             quarter,
             r,
@@ -251,7 +252,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// Where a line is met, on both halves of the section of a tool that lies.
-    fn met(&mut self, search: &Search<Section>, root: Root<SectionPoint>, line: usize) -> Result<(), Open> {
+    fn met(&mut self, search: &Search<Section>, root: Root<SectionPoint>, line: usize) -> Result<(), Undecided> {
         let Search { curve, y, mirror } = search;
         let Section {
             quarter, p, r, side, ..

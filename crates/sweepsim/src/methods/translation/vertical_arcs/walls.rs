@@ -1,8 +1,8 @@
 //! What is parallel to the arc's plane or to the dexels, and so moves along itself but where the tip turns back: all of it is met at once.
 
-use super::roots::Open;
 use super::{Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
+use crate::methods::sheets::Undecided::Close;
 use crate::methods::sheets::intervals::{Range, scaled};
 use sweepsim_dexel::Source;
 
@@ -26,7 +26,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let error = 4.0 * self.slack;
         let radii = [if inner == 0.0 { f64::NEG_INFINITY } else { inner }, outer];
         self.each([x, y, z], [[-outer, outer]; 2], |own, line, [q, p]| {
-            if certainly_within((q * q + p * p).sqrt(), radii, error).ok_or(Open)? {
+            if certainly_within((q * q + p * p).sqrt(), radii, error).ok_or(Close)? {
                 own.crossing(line, z, jump, [0.0, 0.0, up], share);
             }
             Ok(())
@@ -46,11 +46,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let ranges = [[-radius, radius], [along[0] - wide, along[1] + wide]];
         self.each(self.arc.centre, ranges, |own, line, [q, p]| {
             let inside = certainly_within(q, along, wide);
-            let Some(Chord { half, certain, .. }) = own.chord(radius, p, slack).filter(|_| inside != Some(false)) else {
+            let Some(Chord { half, certain, .. }) = own.chord(radius, p, slack).filter(|_| inside != Some(false))
+            else {
                 return Ok(());
             };
             if inside.is_none() || !certain {
-                return Err(Open);
+                return Err(Close);
             }
             for (jump, side) in jumps.into_iter().zip([1.0, -1.0]) {
                 if jump != 0 {

@@ -1,10 +1,9 @@
 //! What the last step of Newton's method leaves, against searches that go on until nothing changes.
 
 use crate::cutter::outline::Outline;
-use crate::methods::harvest::Harvest;
+use crate::methods::harvest::{Collector, Harvest};
 use crate::methods::lattice::Lattice;
-use crate::methods::translation::Collector;
-use crate::methods::turning::{Searching, envelope};
+use crate::methods::turning::{Accuracy, Searching, envelope};
 use sweepsim_dexel::{Crossing, Grid, Source};
 use sweepsim_motion::{Pose, Segment, Tool};
 
@@ -23,8 +22,10 @@ fn found(
     };
     let mut searching = Searching {
         collector: &mut collector,
-        slack: 1e-14,
-        height_tolerance,
+        accuracy: Accuracy {
+            slack: 1e-14,
+            height_tolerance,
+        },
     };
     let mut done = (vec![false; tool.patches().len()], vec![false; tool.edges().len()]);
     let source = |t: f64| Source::Cut {

@@ -1,14 +1,15 @@
 //! The search of a shell along a span, line by line.
 
-use super::{Falls, Meeting, Passage, Shell, Undecided};
+use super::{Falls, Meeting, Passage, Shell};
 use crate::algebra::certain::certainly_within;
-use crate::methods::harvest::unit;
-use crate::methods::turning::axis_motion::AxisMotion;
-use crate::methods::turning::blocks::blocks;
+use crate::methods::harvest::{Collector, unit};
+use crate::methods::sheets::Undecided::{self, Close, Intricate};
 use crate::methods::sheets::intervals::{Range, Sign};
+use crate::methods::sheets::search_lines;
+use crate::methods::turning::axis_motion::AxisMotion;
 use crate::methods::turning::spans::{Span, Verdict};
 use crate::methods::turning::zero::{Known, Sample, Turn, start, zero};
-use crate::methods::turning::{Leftover, Searching};
+use crate::methods::turning::{Accuracy, Searching};
 use std::cell::Cell;
 use sweepsim_dexel::Source;
 
@@ -30,39 +31,33 @@ pub(super) struct View<'p, P> {
 
 /// A search of a shell along one span of a motion.
 pub(in crate::methods::turning) struct ShellSearch<'a, S: Shell, F> {
-    shell: &'a S,
-    motion: &'a AxisMotion,
-    limits: &'a S::Limits,
-    source: F,
-    /// Lines that are left to charts.
-    left: &'a mut Leftover,
+    pub shell: &'a S,
+    pub limits: &'a S::Limits,
+    pub motion: &'a AxisMotion,
+    pub accuracy: Accuracy,
+    pub source: F,
     /// How often the span of the line may still be halved.
     halvings: u32,
     /// Of each sheet, what was found last.
     last: [Option<Known>; 2],
 }
 
-/// A line: its numbers, its place, and the sheets of it that may turn in the span.
+/// A line: its number, its place, and the sheets of it that may turn in the span.
 #[derive(Clone, Copy)]
 struct Line {
-    number: (usize, usize),
+    number: usize,
     at: [f64; 2],
     sheets: [bool; 2],
 }
 
 impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
-    pub fn new(
-        (shell, limits): (&'a S, &'a S::Limits),
-        motion: &'a AxisMotion,
-        source: F,
-        left: &'a mut Leftover,
-    ) -> Self {
+    pub fn new((shell, limits): (&'a S, &'a S::Limits), motion: &'a AxisMotion, source: F, accuracy: Accuracy) -> Self {
         Self {
             shell,
-            motion,
             limits,
+            motion,
+            accuracy,
             source,
-            left,
             halvings: HALVINGS,
             last: [None; 2],
         }
@@ -72,13 +67,12 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
     pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
         let (shell, limits) = (self.shell, self.limits);
         let [a, b] = [&span.from, &span.to].map(|moment| shell.at(moment));
-        let lines = searching.collector.lines;
         let (length, mark) = (span.bounds.length, searching.collector.mark());
         // If most lines are intricate, charts may as well have all of them.
         let hopeless = Cell::new(false);
-        let mut visited = 0;
-        blocks(
-            lines,
+        let [mut visited, mut intricate] = [0; 2];
+        let left = search_lines(
+            searching.collector,
             area,
             |block| {
                 if hopeless.get() {
@@ -88,52 +82,34 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 let sheets = [below == Sign::Unknown, above == Sign::Unknown];
                 (sheets[0] || sheets[1]).then_some(sheets)
             },
-            |number, at, sheets| {
+            |collector, number, at, sheets| {
                 if hopeless.get() {
-                    return;
+                    return Ok(());
                 }
                 let view = |t: f64, posed| View {
                     t,
                     at: posed,
                     meeting: shell.meet(posed, at),
                 };
-                let ends = [view(span.from.t, &a), view(span.to.t, &b)];
-                self.line(searching, Line { number, at, sheets }, &ends);
+                let ends = [&view(span.from.t, &a), &view(span.to.t, &b)];
+                self.halvings = HALVINGS;
+                let found = self.between(collector, Line { number, at, sheets }, ends, 0);
                 visited += 1;
-                let left = self.left.lines.len();
-                hopeless.set(left > FEW && 2 * left > visited);
+                intricate += usize::from(found == Err(Intricate));
+                hopeless.set(intricate > FEW && 2 * intricate > visited);
+                found
             },
         );
         if hopeless.get() {
             searching.collector.forget(mark);
-            self.left.lines.clear();
             return Verdict::Intricate;
         }
-        Verdict::Settled
-    }
-
-    /// The crossings of a line between two times.
-    #[inline]
-    fn line(&mut self, searching: &mut Searching, line: Line, [from, to]: &[View<S::Posed>; 2]) {
-        let mark = searching.collector.mark();
-        self.halvings = HALVINGS;
-        if let Err(undecided) = self.between(searching, line, [from, to], 0) {
-            searching.collector.forget(mark);
-            let (i, j) = line.number;
-            if !searching.collector.lines.asks(i, j) {
-                return;
-            }
-            let number = searching.collector.lines.line(i, j);
-            match undecided {
-                Undecided::Close => searching.collector.open(number),
-                Undecided::Intricate => self.left.lines.push(number as u32),
-            }
-        }
+        Verdict::Settled(left)
     }
 
     fn between(
         &mut self,
-        searching: &mut Searching,
+        collector: &mut Collector,
         line: Line,
         [from, to]: [&View<S::Posed>; 2],
         depth: u32,
@@ -158,7 +134,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         }
         if falls.contains(&Falls::Unknown) {
             if depth == DEEPEST || self.halvings == 0 {
-                return Err(Undecided::Intricate);
+                return Err(Intricate);
             }
             self.halvings -= 1;
             let share = match passage {
@@ -172,8 +148,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 at: &posed,
                 meeting: self.shell.meet(&posed, line.at),
             };
-            self.between(searching, line, [from, &middle], depth + 1)?;
-            return self.between(searching, line, [&middle, to], depth + 1);
+            self.between(collector, line, [from, &middle], depth + 1)?;
+            return self.between(collector, line, [&middle, to], depth + 1);
         }
         let there = [passage != Passage::Enters, passage != Passage::Leaves];
         for sheet in 0..2 {
@@ -187,16 +163,16 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             for (end, view) in [from, to].into_iter().enumerate() {
                 if there[end] {
                     if self.shell.doubtful(self.limits, &view.meeting, sheet) {
-                        return Err(Undecided::Close);
+                        return Err(Close);
                     }
                     outwards[end] = view.meeting.g[sheet] >= 0.0;
                 }
             }
             if outwards[0] != outwards[1] {
                 if outwards[0] != falling {
-                    return Err(Undecided::Intricate);
+                    return Err(Intricate);
                 }
-                self.turn(searching, line, ([from, to], there), (sheet, falling))?;
+                self.turn(collector, line, ([from, to], there), (sheet, falling))?;
             }
         }
         Ok(())
@@ -205,13 +181,19 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
     /// The place where a sheet turns, of which there is exactly one, where `g` falls or rises: Newton's method in a bracket.
     fn turn(
         &mut self,
-        searching: &mut Searching,
+        collector: &mut Collector,
         line: Line,
         ([from, to], there): ([&View<S::Posed>; 2], [bool; 2]),
         (sheet, falling): (usize, bool),
     ) -> Result<(), Undecided> {
         let (shell, motion, limits) = (self.shell, self.motion, self.limits);
-        let (ends, slack, height_tolerance) = (shell.ends(), searching.slack, searching.height_tolerance);
+        let (
+            ends,
+            Accuracy {
+                slack,
+                height_tolerance,
+            },
+        ) = (shell.ends(), self.accuracy);
         let last = self.last[sheet].as_ref();
         let bracket = [from.t, to.t];
         // So that the function falls.
@@ -275,14 +257,10 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             },
         )?;
         self.last[sheet] = Some(known);
-        let (i, j) = line.number;
-        if let Some(Turn { t, height, normal }) = found
-            && searching.collector.lines.asks(i, j)
-        {
+        if let Some(Turn { t, height, normal }) = found {
             let jump = if (sheet == 0) == falling { 1 } else { -1 };
-            let number = searching.collector.lines.line(i, j);
             let source = (self.source)(t);
-            searching.collector.crossing(number, height, jump, unit(normal), source);
+            collector.crossing(line.number, height, jump, unit(normal), source);
         }
         Ok(())
     }

@@ -1,18 +1,61 @@
 //! The lines that may have a crossing, found by halving blocks of neighbouring lines.
 
-use crate::methods::sheets::intervals::Range;
+use super::Undecided;
+use super::intervals::Range;
+use crate::methods::harvest::Collector;
 use crate::methods::lattice::Lattice;
-use crate::methods::translation::numbers;
 
 /// Blocks of so few lines are visited line by line.
 const FEW: usize = 24;
 
-/// Visits the lines with `x` and `y` in these ranges, except for blocks of which nothing is `wanted`, given their ranges of `x` and `y`; with what is wanted of their block.
-pub(super) fn blocks<W: Copy>(
+/// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is greater than the last.
+#[inline]
+pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
+    let window = if axis == 0 { lines.i } else { lines.j };
+    let (first, density) = lines.scale(axis);
+    // A fraction of a line more, since the scale is rounded.
+    let (a, b) = (
+        ((low - first) * density - 1e-3).max(window[0] as f64),
+        ((high - first) * density + 1e-3).min(window[1] as f64),
+    );
+    // False for NaN, too.
+    if !(a <= b) {
+        return None;
+    }
+    // Both are in the window now, so casts round down.
+    // There are no more than 2³² lines.
+    let (low, b) = (a as u32, b as u32);
+    let a = low as usize + usize::from(f64::from(low) < a);
+    (a <= b as usize).then_some([a, b as usize])
+}
+
+/// Visits the lines with `x` and `y` in these ranges that are asked for, except for blocks of which nothing is `wanted`, given their ranges of `x` and `y`; with what is wanted of their block.
+/// Those that are too close are left open, without crossings; those that are intricate are returned.
+pub(crate) fn search_lines<'a, W: Copy>(
+    collector: &mut Collector<'a>,
+    area: [Range; 2],
+    wanted: impl FnMut([Range; 2]) -> Option<W>,
+    mut visit: impl FnMut(&mut Collector<'a>, usize, [f64; 2], W) -> Result<(), Undecided>,
+) -> Vec<u32> {
+    let (lines, mut intricate) = (collector.lines, Vec::new());
+    blocks(lines, area, wanted, |number, line, what| {
+        let mark = collector.mark();
+        if let Err(undecided) = visit(collector, number, line, what) {
+            collector.forget(mark);
+            match undecided {
+                Undecided::Close => collector.open(number),
+                Undecided::Intricate => intricate.push(number as u32),
+            }
+        }
+    });
+    intricate
+}
+
+fn blocks<W: Copy>(
     lines: &Lattice,
     [x, y]: [Range; 2],
     mut wanted: impl FnMut([Range; 2]) -> Option<W>,
-    mut visit: impl FnMut((usize, usize), [f64; 2], W),
+    mut visit: impl FnMut(usize, [f64; 2], W),
 ) {
     let (Some(i), Some(j)) = (numbers(lines, 0, x), numbers(lines, 1, y)) else {
         return;
@@ -34,7 +77,9 @@ pub(super) fn blocks<W: Copy>(
             for i in i[0]..=i[1] {
                 let x = lines.coordinate(0, i);
                 for j in j[0]..=j[1] {
-                    visit((i, j), [x, lines.coordinate(1, j)], what);
+                    if lines.asks(i, j) {
+                        visit(lines.line(i, j), [x, lines.coordinate(1, j)], what);
+                    }
                 }
             }
             continue;
@@ -55,7 +100,7 @@ pub(super) fn blocks<W: Copy>(
 }
 
 /// The smallest box that holds some points, wider by a margin.
-pub(super) fn around(points: &[[f64; 2]], margin: f64) -> [Range; 2] {
+pub(crate) fn around(points: &[[f64; 2]], margin: f64) -> [Range; 2] {
     [0, 1].map(|k| {
         let ends = points
             .iter()
@@ -67,7 +112,7 @@ pub(super) fn around(points: &[[f64; 2]], margin: f64) -> [Range; 2] {
 }
 
 /// How far a block is from a straight way, at least.
-pub(super) fn distance([x, y]: [Range; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
+pub(crate) fn distance([x, y]: [Range; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let centre = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])];
     let reach = 0.5 * (x[1] - x[0]).hypot(y[1] - y[0]);
     let (way, arm) = (

@@ -1,27 +1,32 @@
 //! Newton's method in a bracket.
 
 /// Steps of Newton's method, or bisections, of which a handful suffice.
-pub(super) const STEPS: usize = 80;
+pub(crate) const STEPS: usize = 80;
 
 /// The middle of a bracket: the geometric one where its ends differ by much.
-pub(super) fn middle(a: f64, b: f64) -> f64 {
+pub(crate) fn middle(a: f64, b: f64) -> f64 {
     if b > 4.0 * a && a > 0.0 {
         (a * b).sqrt()
     } else {
-        0.5 * (a + b)
+        halfway(a, b)
     }
+}
+
+/// The middle of a bracket.
+pub(crate) fn halfway(a: f64, b: f64) -> f64 {
+    0.5 * (a + b)
 }
 
 /// Steps of Newton's method from `start`, or to the middle of the bracket where one leads out of it: next to an extreme
 /// it may be anything. `at` gives the value, which `rises` or falls, the step to be subtracted, and what else `done`
 /// gets, which is asked for the result at each place, with the bracket that remains.
 #[inline]
-pub(super) fn newton<T, R>(
+pub(crate) fn newton<T, R>(
     [mut a, mut b]: [f64; 2],
     (rises, start): (bool, f64),
     middle: impl Fn(f64, f64) -> f64,
-    at: impl Fn(f64) -> (f64, f64, T),
-    done: impl Fn(f64, f64, T, [f64; 2]) -> Option<R>,
+    mut at: impl FnMut(f64) -> (f64, f64, T),
+    mut done: impl FnMut(f64, f64, &T, [f64; 2]) -> Option<R>,
 ) -> Option<R> {
     let mut x = start;
     for _ in 0..STEPS {
@@ -35,7 +40,7 @@ pub(super) fn newton<T, R>(
         } else {
             b = x;
         }
-        if let Some(found) = done(x, step, own, [a, b]) {
+        if let Some(found) = done(x, step, &own, [a, b]) {
             return Some(found);
         }
         x -= step;
