@@ -8,9 +8,12 @@
 //!
 //! along the line. Where the curve of the centre is less curved than the ball, `|C′|² > R |C″|`, each `G` falls wherever it is 0.
 
+use super::Accuracy;
 use super::axis_motion::{Bounds, Moment};
 use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
+use super::spans::{Span, Verdict};
 use crate::cutter::outline::Ball;
+use crate::methods::sheets::around;
 use crate::methods::sheets::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
 use nalgebra::{Vector2, Vector3};
 
@@ -25,7 +28,7 @@ pub(super) struct Centre {
 
 impl Centre {
     /// Seen along the dexels.
-    pub fn level(&self) -> [f64; 2] {
+    fn level(&self) -> [f64; 2] {
         [self.place.x, self.place.y]
     }
 }
@@ -73,18 +76,6 @@ impl Ball {
         let rounding = f64::EPSILON * self.radius * (level + steep);
         [32.0 * (slack * level + rounding), 32.0 * slack * self.radius * steep]
     }
-
-    /// What a pose at rest has of limits.
-    pub(super) fn at_rest(&self, centre: &Centre, slack: f64) -> BallLimits {
-        let speed = [centre.rate.xy().norm(), centre.rate.z.abs()];
-        BallLimits {
-            bow: 0.0,
-            turn: 0.0,
-            turning: 0.0,
-            doubt: self.doubt(speed, slack),
-            pad: 16.0 * slack,
-        }
-    }
 }
 
 /// Where a straight way is nearest to a line.
@@ -99,6 +90,33 @@ fn share([a, b]: [&Meeting; 2]) -> f64 {
 impl Shell for Ball {
     type Posed = Centre;
     type Limits = BallLimits;
+
+    fn along(&self, span: &Span, accuracy: Accuracy, _: f64) -> Result<(BallLimits, [Range; 2]), Verdict> {
+        let (ends, bounds) = ([&span.from, &span.to], &span.bounds);
+        if !span.last && span.is_far(self.centre.abs(), self.radius) {
+            return Err(Verdict::Long);
+        }
+        let limits = self.limits(ends, bounds, accuracy.slack).ok_or(Verdict::Long)?;
+        let margin = self.radius + bounds.sag(limits.bow) + accuracy.slack;
+        Ok((limits, around(&ends.map(|moment| self.at(moment).level()), margin)))
+    }
+
+    fn at_rest(&self, moment: &Moment, slack: f64) -> Option<(Centre, BallLimits)> {
+        let centre = self.at(moment);
+        let speed = [centre.rate.xy().norm(), centre.rate.z.abs()];
+        let limits = BallLimits {
+            bow: 0.0,
+            turn: 0.0,
+            turning: 0.0,
+            doubt: self.doubt(speed, slack),
+            pad: 16.0 * slack,
+        };
+        Some((centre, limits))
+    }
+
+    fn area(&self, at: &Centre, slack: f64) -> [Range; 2] {
+        around(&[at.level()], self.radius + slack)
+    }
 
     #[inline]
     fn at(&self, moment: &Moment) -> Centre {

@@ -12,13 +12,23 @@
 
 mod pivot;
 
+use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::lean::Lean;
 use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
+use super::spans::{Span, Verdict};
+use crate::methods::sheets::around;
 use crate::methods::sheets::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
 use nalgebra::Vector3;
+
+/// An axis that leans less than this is taken as upright, or less than what rounding allows,
+const UPRIGHT: f64 = 2.5e-5;
+/// up to this;
+const STEEP: f64 = 0.006;
+/// one at rest that leans less than this is left to charts.
+const LEANING: f64 = 0.02;
 
 /// The part of a cylinder between two heights.
 #[derive(Clone, Copy, Debug)]
@@ -54,14 +64,14 @@ impl Cylinder {
     }
 
     /// The bound of `|δ″|` and `|q″|` for lines over the span.
-    pub fn bow(&self, bounds: &Bounds) -> f64 {
+    fn bow(&self, bounds: &Bounds) -> f64 {
         let [swing, change] = bounds.swing;
         let reach = self.reach() + (bounds.speed + bounds.rate * self.reach()) * bounds.length;
         (swing * swing + change) * reach + 2.0 * swing * bounds.speed
     }
 
     /// The bound of the second derivative of the corners of its shadow, seen along the dexels.
-    pub fn shadow_bow(&self, bounds: &Bounds) -> f64 {
+    fn shadow_bow(&self, bounds: &Bounds) -> f64 {
         let [swing, change] = bounds.swing;
         // Of `u` and of `k u`, with the horizontal direction `u` of the axis.
         let turn = swing * swing + change;
@@ -70,7 +80,7 @@ impl Cylinder {
     }
 
     /// `|G| |α|` below this may be rounding, for points that move across the axis by at most `across`, in all by `speed` and the turn at `rate`, with an axis that leans by `s`.
-    pub fn doubt(&self, [across, speed, rate]: [f64; 3], s: f64, slack: f64) -> f64 {
+    fn doubt(&self, [across, speed, rate]: [f64; 3], s: f64, slack: f64) -> f64 {
         let r = self.radius;
         32.0 * r * (slack * (across + rate * r / s) + f64::EPSILON * r * speed)
     }
@@ -139,34 +149,63 @@ impl Cylinder {
         let across = [across(0), across(1)];
         (add(mul(alpha, across[0]), mul(delta, across[1])), across)
     }
+}
 
-    /// What a pose at rest has of limits.
-    pub fn at_rest(&self, (moment, pose): (&Moment, &Lean), slack: f64) -> CylinderLimits {
-        let (rate, [s, _]) = (moment.rate.norm(), pose.tilt);
+impl Shell for Cylinder {
+    type Posed = Lean;
+    type Limits = CylinderLimits;
+
+    fn along(&self, span: &Span, accuracy: Accuracy, spacing: f64) -> Result<(CylinderLimits, [Range; 2]), Verdict> {
+        let (ends, bounds, slack) = ([&span.from, &span.to], &span.bounds, accuracy.slack);
+        // Heights of points are off by the rounding error over the lean.
+        let least = (slack / accuracy.height_tolerance).clamp(UPRIGHT, STEEP);
+        if bounds.lean[1] <= 4.0 * least {
+            return Err(Verdict::Intricate);
+        }
+        if !(bounds.lean[0] > least) {
+            return Err(Verdict::Upright);
+        }
+        let limits = self.limits(ends, bounds, slack).ok_or(Verdict::Upright)?;
+        let reach = self.ends[0].abs().max(self.ends[1].abs());
+        if !span.last && span.is_far(0.5 * reach, self.radius) {
+            return Err(Verdict::Long);
+        }
+        // How far lines may be from where a straight way has them: fewer spans for more, fewer lines that need another look for less.
+        if bounds.sag(limits.bow) > (0.5 * spacing).min(0.05 * self.radius) {
+            return Err(if bounds.lean[0] < STEEP {
+                Verdict::Upright
+            } else {
+                Verdict::Long
+            });
+        }
+        let corners = ends.map(|moment| self.at(moment).corners(self.radius, self.ends));
+        let wider = bounds.sag(self.shadow_bow(bounds)) + slack;
+        Ok((limits, around(&corners.concat(), wider)))
+    }
+
+    fn at_rest(&self, moment: &Moment, slack: f64) -> Option<(Lean, CylinderLimits)> {
+        let pose = Lean::new(moment)?;
+        let (rate, [s, k]) = (moment.rate.norm(), pose.tilt);
         let height = self.reach() + self.radius / s;
-        let doubt = self.doubt(
-            [moment.across() + rate * height, moment.velocity.norm(), rate],
-            s,
-            slack,
-        );
-        CylinderLimits {
+        let across = moment.across() + rate * height;
+        let limits = CylinderLimits {
             bow: 0.0,
-            doubt,
+            doubt: self.doubt([across, moment.velocity.norm(), rate], s, slack),
             pad: 16.0 * slack,
             pivot: None,
             travel: 0.0,
             rate: 0.0,
             bend: 0.0,
             turning: 0.0,
-            lean: [pose.tilt[0]; 2],
-            rise: [pose.tilt[1]; 2],
-        }
+            lean: [s; 2],
+            rise: [k; 2],
+        };
+        (s > LEANING).then_some((pose, limits))
     }
-}
 
-impl Shell for Cylinder {
-    type Posed = Lean;
-    type Limits = CylinderLimits;
+    fn area(&self, at: &Lean, slack: f64) -> [Range; 2] {
+        around(&at.corners(self.radius, self.ends), slack)
+    }
 
     fn at(&self, moment: &Moment) -> Lean {
         Lean::of(moment)

@@ -8,22 +8,16 @@
 //!
 //! along the line. If the axis travels faster along itself than the rim turns, `F` is never 0.
 
-use super::axis_motion::{AxisMotion, Bounds, Moment};
+use super::Accuracy;
+use super::axis_motion::{Bounds, Moment};
+use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use super::spans::{Span, Verdict};
-use super::zero::{Known, Sample, Turn, start, zero};
-use super::{Accuracy, Searching};
-use crate::algebra::certain::certainly_within;
-use crate::methods::harvest::unit;
-use crate::methods::sheets::Undecided::{self, Close, Intricate};
-use crate::methods::sheets::intervals::Range;
-use crate::methods::sheets::{around, distance, search_lines};
+use crate::methods::sheets::intervals::{Range, Sign, add, between, joined, mul, scaled, sub};
+use crate::methods::sheets::{around, distance};
 use nalgebra::Vector3;
-use sweepsim_dexel::Source;
 
 /// A plane that is steeper than this is left to charts.
 const STEEP: f64 = 1e-3;
-/// The last step of Newton's method may turn the normal by so much: corrected to first order, that leaves its square.
-const TURNED: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disc {
@@ -75,71 +69,33 @@ impl Placed {
     pub fn along(&self, arm: &Vector3<f64>) -> f64 {
         self.along - arm.dot(&self.rate)
     }
+
+    /// How fast `F` falls along x and y.
+    #[inline]
+    fn falls(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.rate[k] - self.rate.z * self.axis[k] * self.inverse)
+    }
+}
+
+/// What is known over a span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DiscLimits {
+    /// Whether the line meets the disc below or above it.
+    sheet: usize,
+    /// Whether `G` falls wherever it is 0, or rises.
+    falls: Falls,
+    /// `|G|` below this may be rounding, unless it is a product.
+    doubt: f64,
+    product: bool,
+    /// Bounds of the second derivative of the centre, and of how fast `⟨V, a⟩` at the centre and [`Placed::falls`] change.
+    bow: f64,
+    rates: [f64; 2],
+    /// How fast velocities turn.
+    turning: f64,
+    pad: f64,
 }
 
 impl Disc {
-    /// Whether a line at this distance from the centre meets it, if that is certain.
-    pub fn holds(&self, radius: f64, error: f64) -> Option<bool> {
-        let [inner, outer] = self.radii;
-        certainly_within(radius, [if inner == 0.0 { -1.0 } else { inner }, outer], error)
-    }
-
-    /// Settles one span of a motion, unless it is too long.
-    pub fn settle(
-        &self,
-        (motion, span): (&AxisMotion, &Span),
-        Searching { collector, accuracy }: &mut Searching,
-        source: &impl Fn(f64) -> Source,
-    ) -> Verdict {
-        let Span { from, to, bounds, .. } = span;
-        let slack = accuracy.slack;
-        if self.keeps_its_sign([from, to], bounds, slack) {
-            return Verdict::Settled(Vec::new());
-        }
-        let steep = bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP;
-        let Some(falls) = self.falls([from, to], bounds).filter(|_| !steep) else {
-            return Verdict::Long;
-        };
-        let [a, b] = [from, to].map(|moment| Placed::new(moment, self.height));
-        let sag = bounds.sag(self.height.abs() * bounds.bend);
-        let reach = self.radii[1] + sag + slack;
-        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
-        let doubt = 16.0 * slack * (bounds.rate * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON / slack);
-        let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
-        // Blocks that the disc does not reach.
-        let over = |block: [Range; 2]| (distance(block, centres) <= reach).then_some(());
-        let mut last = None;
-        let left = search_lines(
-            collector,
-            around(&centres, reach),
-            over,
-            |collector, number, line, ()| {
-                let ends = [a.along(&a.arm(line)), b.along(&b.arm(line))];
-                if ends.iter().any(|f| f.abs() <= doubt) {
-                    // Only if it is over the disc.
-                    let beside = |placed: &Placed| placed.arm(line).norm() > 2.0 * self.radii[1];
-                    return if beside(&a) && beside(&b) { Ok(()) } else { Err(Close) };
-                }
-                if (ends[0] >= 0.0) == (ends[1] >= 0.0) {
-                    return Ok(());
-                }
-                if (ends[0] > 0.0) != falls {
-                    return Err(Intricate);
-                }
-                if let Some(Turn { t, height, normal }) =
-                    self.turn((motion, span), line, (ends, &mut last), *accuracy)?
-                {
-                    // From `g > 0` to `g < 0` if `F` falls on the upper side, or rises on the lower one.
-                    let inwards = falls == (self.up > 0.0);
-                    let jump = if (normal.z > 0.0) == inwards { -1 } else { 1 };
-                    collector.crossing(number, height, jump, unit(normal), source(t));
-                }
-                Ok(())
-            },
-        );
-        Verdict::Settled(left)
-    }
-
     /// Whether `F` is certain not to be 0 on the disc.
     fn keeps_its_sign(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> bool {
         let [a, b] = [from, to].map(|m| m.along);
@@ -149,81 +105,175 @@ impl Disc {
     }
 
     /// Whether `F` falls wherever it is 0, or rises wherever it is; `None` if that is not certain.
-    fn falls(&self, [from, to]: [&Moment; 2], bounds: &Bounds) -> Option<bool> {
+    fn falls_where_zero(&self, [from, to]: [&Moment; 2], bounds: &Bounds, least: f64) -> Option<bool> {
         let slope = |m: &Moment| 2.0 * m.rate.dot(&m.velocity) + self.height * m.rate.norm_squared();
         let [a, b] = [slope(from), slope(to)];
         let changes = 2.0 * bounds.bend * (bounds.speed + self.height.abs() * bounds.rate);
         // For all lines over the disc at any time of the span, at all times.
-        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
         let way = (bounds.speed + self.height.abs() * bounds.rate) * bounds.length;
         let arm = (self.radii[1] + way) * (1.0 + least.recip());
         let rest = 0.5 * bounds.length * changes + arm * (bounds.across + bounds.askew);
         (a * b > 0.0 && a.abs().min(b.abs()) > rest * (1.0 + 1e-9)).then_some(a < 0.0)
     }
 
-    /// Where `F` is 0, if that is on the disc.
-    fn turn(
-        &self,
-        (motion, span): (&AxisMotion, &Span),
-        line: [f64; 2],
-        (ends, last): ([f64; 2], &mut Option<Known>),
-        Accuracy {
-            slack,
-            height_tolerance,
-        }: Accuracy,
-    ) -> Result<Option<Turn>, Undecided> {
-        let side = ends[0].signum();
-        let turning = span.bounds.turning();
-        let bracket = [span.from.t, span.to.t];
-        let first = match last.as_ref().map(|last| last.over(line)) {
-            Some(t) if t > bracket[0] && t < bracket[1] => t,
-            _ => start(bracket, ends.map(|f| Some([side * f, f64::NAN]))),
+    /// On which side of its own a line meets it.
+    fn sheet(&self, axis: f64) -> usize {
+        usize::from(self.up * axis > 0.0)
+    }
+}
+
+/// `G` is `F` on the side of the normal.
+impl Shell for Disc {
+    type Posed = Placed;
+    type Limits = DiscLimits;
+
+    fn along(&self, span: &Span, accuracy: Accuracy, _: f64) -> Result<(DiscLimits, [Range; 2]), Verdict> {
+        let (ends, bounds, slack) = ([&span.from, &span.to], &span.bounds, accuracy.slack);
+        if self.keeps_its_sign(ends, bounds, slack) {
+            return Err(Verdict::Settled(Vec::new()));
+        }
+        if !span.last && span.is_far(self.height.abs(), self.radii[1]) {
+            return Err(Verdict::Long);
+        }
+        let least = bounds.rise[0].max(-bounds.rise[1]);
+        let Some(falls) = self.falls_where_zero(ends, bounds, least).filter(|_| least >= STEEP) else {
+            return Err(Verdict::Long);
         };
-        let (found, known) = zero(
-            bracket,
-            ([true; 2], first),
-            |t| {
-                let placed = Placed::new(&motion.at(t), self.height);
-                let arm = placed.arm(line);
-                let f = placed.along(&arm);
-                let rise = f * placed.inverse;
-                let slope = 2.0 * placed.rate.dot(&placed.travel)
-                    - self.height * placed.rate.norm_squared()
-                    - arm.dot(&placed.bend)
-                    - placed.rate.z * rise;
-                Some(Sample {
-                    value: side * f,
-                    slope: side * slope,
-                    rise,
-                    state: (placed, arm),
-                })
+        let bow = self.height.abs() * bounds.bend;
+        // Of the horizontal part of the axis over the vertical one.
+        let tilts = bounds.rate * (1.0 + least.recip()) / least;
+        let limits = DiscLimits {
+            sheet: self.sheet(span.from.axis.z),
+            falls: if falls == (self.up > 0.0) {
+                Falls::Always
+            } else {
+                Falls::Never
             },
-            |t, step, sample| {
-                let (placed, arm) = &sample.state;
-                let (radius, turn, tilt) = (arm.norm(), placed.rate.norm(), 1.0 + placed.inverse.abs());
-                let speed = placed.travel.norm() + self.radii[1].max(radius) * turn;
-                let turned = tilt * (turning + turn) * (1.0 + turn * speed / sample.slope.abs()) * step.abs();
-                // So that the zero is no farther than two steps from here.
-                if !(turned < 0.125) {
-                    return None;
-                }
-                let error = 8.0 * (slack + speed * step.abs()) * tilt;
-                let inside = self.holds(radius, error)?;
-                // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
-                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
-                    return None;
-                }
-                let [x, y] = [0, 1].map(|k| placed.rate[k] - placed.rate.z * placed.axis[k] * placed.inverse);
-                let known = Known::new(line, t, ([-side * x, -side * y], sample.slope), last.as_ref());
-                let turn = Turn {
-                    t,
-                    height: placed.centre.z + arm.z + 0.5 * sample.rise * step,
-                    normal: (placed.axis + placed.rate * step) * self.up,
-                };
-                Some((inside.then_some(turn), known))
-            },
-        )?;
-        *last = Some(known);
-        Ok(found)
+            doubt: 16.0 * (slack * bounds.rate * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON),
+            product: false,
+            bow,
+            rates: [
+                bounds.speed * bounds.rate,
+                bounds.bend * (1.0 + least.recip()) + bounds.rate * tilts,
+            ],
+            turning: bounds.turning(),
+            pad: slack,
+        };
+        let centres = ends.map(|moment| moment.tip + moment.axis * self.height);
+        let area = around(
+            &centres.map(|c| [c.x, c.y]),
+            self.radii[1] + span.bounds.sag(bow) + slack,
+        );
+        Ok((limits, area))
+    }
+
+    fn at_rest(&self, moment: &Moment, slack: f64) -> Option<(Placed, DiscLimits)> {
+        let placed = self.at(moment);
+        let rate = placed.rate.norm();
+        let error = 8.0 * slack * (3.0 + placed.inverse.abs());
+        let limits = DiscLimits {
+            sheet: self.sheet(placed.axis.z),
+            falls: Falls::Unknown,
+            doubt: error * rate + 16.0 * f64::EPSILON * placed.travel.norm() * f64::from(u8::from(rate > 0.0)),
+            product: rate == 0.0,
+            bow: 0.0,
+            rates: [0.0; 2],
+            turning: 0.0,
+            pad: slack,
+        };
+        (placed.axis.z.abs() >= STEEP).then_some((placed, limits))
+    }
+
+    fn area(&self, at: &Placed, slack: f64) -> [Range; 2] {
+        around(&[[at.centre.x, at.centre.y]], self.radii[1] + slack)
+    }
+
+    fn at(&self, moment: &Moment) -> Placed {
+        Placed::new(moment, self.height)
+    }
+
+    #[inline]
+    fn meet(&self, at: &Placed, line: [f64; 2]) -> Meeting {
+        let g = self.up * at.along(&at.arm(line));
+        Meeting {
+            half_chord_sq: 1.0,
+            half: 1.0,
+            place: line,
+            g: [g; 2],
+        }
+    }
+
+    fn passage(&self, _: &DiscLimits, _: [&Meeting; 2], _: f64) -> Passage {
+        Passage::Inside
+    }
+
+    fn falls(&self, limits: &DiscLimits, _: [(&Placed, &Meeting); 2], _: f64, _: usize) -> Falls {
+        limits.falls
+    }
+
+    #[inline]
+    fn signs(&self, limits: &DiscLimits, [from, to]: [&Placed; 2], block: [Range; 2], length: f64) -> [Sign; 2] {
+        let mut signs = [Sign::Absent; 2];
+        let sag = 0.125 * limits.bow * length * length;
+        let centres = [from, to].map(|placed| [placed.centre.x, placed.centre.y]);
+        if distance(block, centres) <= self.radii[1] + sag + limits.pad {
+            let [along, change] = limits.rates.map(|rate| rate * length);
+            let (a, b) = (from.falls(), to.falls());
+            let part = |k: usize| {
+                let centre = joined([centres[0][k]; 2], [centres[1][k]; 2], sag);
+                mul(sub(block[k], centre), between(a[k], b[k], change))
+            };
+            let f = sub(between(from.along, to.along, along), add(part(0), part(1)));
+            signs[limits.sheet] = Sign::of(scaled(self.up, f), limits.doubt);
+        }
+        signs
+    }
+
+    fn doubtful(&self, limits: &DiscLimits, meeting: &Meeting, sheet: usize) -> bool {
+        !(limits.product || meeting.g[sheet].abs() > limits.doubt)
+    }
+
+    #[inline]
+    fn slope(&self, at: &Placed, meeting: &Meeting, sheet: usize) -> [f64; 2] {
+        let rise = self.up * meeting.g[sheet] * at.inverse;
+        let slope = 2.0 * at.rate.dot(&at.travel)
+            - self.height * at.rate.norm_squared()
+            - at.arm(meeting.place).dot(&at.bend)
+            - at.rate.z * rise;
+        [self.up * slope, rise]
+    }
+
+    #[inline]
+    fn gradient(&self, at: &Placed, _: &Meeting, _: usize) -> [f64; 2] {
+        at.falls().map(|fall| -self.up * fall)
+    }
+
+    #[inline]
+    fn pace(&self, limits: &DiscLimits, at: &Placed, meeting: &Meeting, slope: f64) -> [f64; 2] {
+        let (radius, turn, tilt) = (at.arm(meeting.place).norm(), at.rate.norm(), 1.0 + at.inverse.abs());
+        let speed = at.travel.norm() + self.radii[1].max(radius) * turn;
+        let pace = tilt * (limits.turning + turn) * (1.0 + turn * speed / slope.abs());
+        [4.0 * speed * tilt, pace]
+    }
+
+    #[inline]
+    fn point(&self, at: &Placed, meeting: &Meeting, (_, rise, step): (usize, f64, f64), slack: f64) -> ShellPoint {
+        let arm = at.arm(meeting.place);
+        ShellPoint {
+            height: at.centre.z + arm.z + 0.5 * rise * step,
+            normal: (at.axis + at.rate * step) * self.up,
+            along: arm.norm(),
+            error: 8.0 * slack * (1.0 + at.inverse.abs()),
+        }
+    }
+
+    /// Of its radii, of which the centre is none.
+    fn ends(&self) -> [f64; 2] {
+        let [inner, outer] = self.radii;
+        [if inner == 0.0 { -1.0 } else { inner }, outer]
+    }
+
+    fn nearest(&self, _: [&Meeting; 2]) -> f64 {
+        0.5
     }
 }

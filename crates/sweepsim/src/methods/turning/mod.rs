@@ -18,22 +18,16 @@ mod zero;
 
 use crate::cutter::outline::{Ball, Outline, Piece, Rim, Shape};
 use crate::methods::harvest::Collector;
-use crate::methods::sheets::around;
 use axis_motion::{AxisMotion, Moment};
 use cylinder::Cylinder;
 use disc::Disc;
 use resting::{Resting, RestingSide};
 use rim::RimSearch;
-use shell::{Shell, ShellSearch};
-use spans::{Span, Verdict, settle};
+use shell::settle_shell;
+use spans::settle;
 use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
-
-/// An axis that leans less than this is taken as upright by cylinders, or less than what rounding allows,
-const UPRIGHT: f64 = 2.5e-5;
-/// up to this.
-const STEEP: f64 = 0.006;
 
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,9 +111,9 @@ pub(crate) fn envelope(
         let kind = Kind::of(piece)?;
         let element = Element::Patches(piece.patches.clone());
         settle(motion, &element, leftovers, |span| match &kind {
-            Kind::Ball(ball) => ball_along(ball, (motion, span), searching, &source),
-            Kind::Cylinder(cylinder) => cylinder_along(cylinder, (motion, span), searching, &source),
-            Kind::Disc(disc) => disc.settle((motion, span), searching, &source),
+            Kind::Ball(ball) => settle_shell(ball, (motion, span), searching, &source),
+            Kind::Cylinder(cylinder) => settle_shell(cylinder, (motion, span), searching, &source),
+            Kind::Disc(disc) => settle_shell(disc, (motion, span), searching, &source),
         });
         Some(())
     };
@@ -133,73 +127,6 @@ pub(crate) fn envelope(
     };
     outline.settle(&mut search, piece, rim, done);
     leftovers
-}
-
-/// How far lines may be from where a straight way has them: fewer spans for more, fewer lines that need another look for less.
-fn most_sag(searching: &Searching, radius: f64) -> f64 {
-    (0.5 * searching.collector.lines.spacing()).min(0.05 * radius)
-}
-
-/// Whether a point at this height goes so far that ranges over a block of lines tell little.
-fn is_far(span: &Span, height: f64, radius: f64) -> bool {
-    span.bounds.length * (span.bounds.speed + height * span.bounds.rate) > radius
-}
-
-fn ball_along(
-    ball: &Ball,
-    (motion, span): (&AxisMotion, &Span),
-    searching: &mut Searching,
-    source: &impl Fn(f64) -> Source,
-) -> Verdict {
-    let (ends, accuracy) = ([&span.from, &span.to], searching.accuracy);
-    if !span.last && is_far(span, ball.centre.abs(), ball.radius) {
-        return Verdict::Long;
-    }
-    let Some(limits) = ball.limits(ends, &span.bounds, accuracy.slack) else {
-        return Verdict::Long;
-    };
-    let [a, b] = ends.map(|moment| ball.at(moment).level());
-    let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
-    let mut search = ShellSearch::new((ball, &limits), motion, source, accuracy);
-    search.lines(searching, span, around(&[a, b], ball.radius + sag + accuracy.slack))
-}
-
-fn cylinder_along(
-    cylinder: &Cylinder,
-    (motion, span): (&AxisMotion, &Span),
-    searching: &mut Searching,
-    source: &impl Fn(f64) -> Source,
-) -> Verdict {
-    let (ends, accuracy) = ([&span.from, &span.to], searching.accuracy);
-    let Accuracy {
-        slack,
-        height_tolerance,
-    } = accuracy;
-    // Heights of points are off by the rounding error over the lean.
-    let least = (slack / height_tolerance).clamp(UPRIGHT, STEEP);
-    let lean = span.bounds.lean;
-    if lean[1] <= 4.0 * least {
-        return Verdict::Intricate;
-    }
-    let Some(limits) = cylinder.limits(ends, &span.bounds, slack).filter(|_| lean[0] > least) else {
-        return Verdict::Upright;
-    };
-    let reach = cylinder.ends[0].abs().max(cylinder.ends[1].abs());
-    if !span.last && is_far(span, 0.5 * reach, cylinder.radius) {
-        return Verdict::Long;
-    }
-    let sag = span.bounds.sag(cylinder.bow(&span.bounds));
-    if sag > most_sag(searching, cylinder.radius) {
-        return if lean[0] < STEEP {
-            Verdict::Upright
-        } else {
-            Verdict::Long
-        };
-    }
-    let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
-    let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + slack;
-    let mut search = ShellSearch::new((cylinder, &limits), motion, source, accuracy);
-    search.lines(searching, span, around(&[a, b].concat(), wider))
 }
 
 /// The tool at rest at one end of a segment, of which at least one side turns. Marks what it settles as done.
@@ -234,15 +161,14 @@ pub(crate) fn placement(
     };
     for piece in &outline.pieces {
         let settled = match Kind::of(piece) {
-            Some(Kind::Ball(ball)) => {
-                resting.ball(&ball, searching);
-                true
-            }
-            Some(Kind::Cylinder(cylinder)) => resting.cylinder(&cylinder, searching),
-            Some(Kind::Disc(disc)) => resting.disc(&disc, searching),
-            None => false,
+            Some(Kind::Ball(ball)) => resting.shell(&ball, searching),
+            // No line meets the wall of an upright tool at rest.
+            Some(Kind::Cylinder(_)) if resting.pose.lean() == 0.0 => Some(()),
+            Some(Kind::Cylinder(cylinder)) => resting.shell(&cylinder, searching),
+            Some(Kind::Disc(disc)) => resting.shell(&disc, searching),
+            None => None,
         };
-        if settled {
+        if settled.is_some() {
             done[piece.patches.clone()].fill(true);
         }
     }

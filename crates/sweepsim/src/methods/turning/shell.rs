@@ -1,4 +1,4 @@
-//! A closed surface that a line enters and leaves, in the course of time: how its two sheets over a line move, and where they turn.
+//! A surface that a line enters and leaves, in the course of time: how its two sheets over a line move, and where they turn.
 //!
 //! On each sheet, `g` has the sign of the speed at which the surface moves outwards. A sheet that begins (the line comes under the surface from the side) begins
 //! with `g > 0`, one that ends does so with `g < 0`. Where `g` falls whenever it is 0, a sheet that exists without interruption therefore has at most one zero, and
@@ -6,9 +6,11 @@
 
 mod search;
 
-pub(super) use search::ShellSearch;
+pub(super) use search::settle_shell;
 
+use super::Accuracy;
 use super::axis_motion::{AxisMotion, Moment};
+use super::spans::{Span, Verdict};
 use crate::methods::sheets::intervals::{Range, Sign};
 use nalgebra::Vector3;
 
@@ -70,12 +72,21 @@ pub(super) struct ShellPoint {
     pub error: f64,
 }
 
-/// A closed surface of the tool, extended beyond the ends of its piece. Sheets: 0 is below, 1 above.
+/// A surface of the tool, extended beyond the ends of its piece: a closed one, or a plane, whose other sheet is absent. Sheets: 0 is below, 1 above.
 pub(super) trait Shell {
     /// What it needs to know of a moment.
     type Posed: Copy;
     /// What it knows about a span.
     type Limits;
+
+    /// What is certain over a span, and the area of the lines that may meet it. `spacing` is the distance of lines.
+    fn along(&self, span: &Span, accuracy: Accuracy, spacing: f64) -> Result<(Self::Limits, [Range; 2]), Verdict>;
+
+    /// A pose at rest, with the motion that it is seen from; `None` if it is left to charts.
+    fn at_rest(&self, moment: &Moment, slack: f64) -> Option<(Self::Posed, Self::Limits)>;
+
+    /// The area of the lines that may meet it at rest.
+    fn area(&self, at: &Self::Posed, slack: f64) -> [Range; 2];
 
     fn at(&self, moment: &Moment) -> Self::Posed;
 

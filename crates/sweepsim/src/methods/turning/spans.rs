@@ -18,6 +18,13 @@ pub(super) struct Span {
     pub last: bool,
 }
 
+impl Span {
+    /// Whether a point at this height goes so far that ranges over a block of lines tell little.
+    pub fn is_far(&self, height: f64, radius: f64) -> bool {
+        self.bounds.length * (self.bounds.speed + height * self.bounds.rate) > radius
+    }
+}
+
 /// What becomes of a span.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {

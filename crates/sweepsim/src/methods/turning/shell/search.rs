@@ -30,16 +30,30 @@ pub(super) struct View<'p, P> {
 }
 
 /// A search of a shell along one span of a motion.
-pub(in crate::methods::turning) struct ShellSearch<'a, S: Shell, F> {
-    pub shell: &'a S,
-    pub limits: &'a S::Limits,
-    pub motion: &'a AxisMotion,
-    pub accuracy: Accuracy,
-    pub source: F,
+struct ShellSearch<'a, S: Shell, F> {
+    shell: &'a S,
+    limits: &'a S::Limits,
+    motion: &'a AxisMotion,
+    accuracy: Accuracy,
+    source: F,
     /// How often the span of the line may still be halved.
     halvings: u32,
     /// Of each sheet, what was found last.
     last: [Option<Known>; 2],
+}
+
+/// Settles one span of a motion, unless it is too long.
+pub(in crate::methods::turning) fn settle_shell<S: Shell>(
+    shell: &S,
+    (motion, span): (&AxisMotion, &Span),
+    searching: &mut Searching,
+    source: impl Fn(f64) -> Source,
+) -> Verdict {
+    let (accuracy, spacing) = (searching.accuracy, searching.collector.lines.spacing());
+    match shell.along(span, accuracy, spacing) {
+        Ok((limits, area)) => ShellSearch::new((shell, &limits), motion, source, accuracy).lines(searching, span, area),
+        Err(verdict) => verdict,
+    }
 }
 
 /// A line: its number, its place, and the sheets of it that may turn in the span.
@@ -63,8 +77,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         }
     }
 
-    /// The crossings of the lines of a box in a span.
-    pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
+    /// The crossings of the lines of an area in a span.
+    fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
         let (shell, limits) = (self.shell, self.limits);
         let [a, b] = [&span.from, &span.to].map(|moment| shell.at(moment));
         let (length, mark) = (span.bounds.length, searching.collector.mark());

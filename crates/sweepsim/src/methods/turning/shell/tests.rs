@@ -1,6 +1,7 @@
 //! What is said to be certain of a line during a span, and slopes and gradients, against samples.
 
 use super::super::cylinder::Cylinder;
+use super::super::disc::Disc;
 use super::*;
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
@@ -14,7 +15,7 @@ fn agrees<S: Shell>(
     limits: &S::Limits,
     motion: &AxisMotion,
     [a, b]: [f64; 2],
-    line: [f64; 2],
+    (line, sheets): ([f64; 2], &[usize]),
 ) -> TestCaseResult {
     let view = |t: f64| {
         let posed = shell.at(&motion.at(t));
@@ -36,7 +37,7 @@ fn agrees<S: Shell>(
         Passage::Through | Passage::Unknown => {}
     }
     let signs = shell.signs(limits, [&from.1, &to.1], line.map(|at| [at; 2]), length);
-    for sheet in 0..2 {
+    for &sheet in sheets {
         let falls = shell.falls(limits, [(&from.1, &from.2), (&to.1, &to.2)], length, sheet);
         let mut before: Option<f64> = None;
         for (t, posed, meeting) in &samples {
@@ -100,7 +101,7 @@ proptest! {
     #[test]
     fn what_is_certain_is_so(tips in [[-4.0..4.0_f64, -4.0..4.0, -4.0..4.0], [-4.0..4.0, -4.0..4.0, -4.0..4.0]],
         axes in [[-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], [-1.0..1.0, -1.0..1.0, 0.1..1.0]],
-        near in 0.01..1.0_f64, ends in [0.0..1.0_f64, 0.0..1.0], lines in collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
+        near in 0.01..1.0_f64, up in any::<bool>(), ends in [0.0..1.0_f64, 0.0..1.0], lines in collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
         let axis = |n: usize| [0, 1, 2].map(|k| axes[0][k] + near * n as f64 * (axes[1][k] - axes[0][k]));
         let [from, to] = [0, 1].map(|n| Pose::new(tips[n], axis(n)).unwrap());
         let segment = &Segment::between(&from, &to)[0];
@@ -110,12 +111,19 @@ proptest! {
         let bounds = motion.bounds([&moments[0], &moments[1]]);
         let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
         let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
+        let disc = Disc { height: 1.0, radii: [0.0, 3.0], up: if up { 1.0 } else { -1.0 } };
+        let [from, to] = moments;
+        let accuracy = Accuracy { slack: 1e-14, height_tolerance: 1e-9 };
+        let on_disc = disc.along(&Span { from, to, bounds, last: true }, accuracy, 1.0);
         for line in lines {
             if let Some(limits) = ball.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&ball, &limits, &motion, span, line)?;
+                agrees(&ball, &limits, &motion, span, (line, &[0, 1]))?;
             }
             if let Some(limits) = cylinder.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&cylinder, &limits, &motion, span, line)?;
+                agrees(&cylinder, &limits, &motion, span, (line, &[0, 1]))?;
+            }
+            if let Ok((limits, _)) = &on_disc {
+                agrees(&disc, limits, &motion, span, (line, &[usize::from(up)]))?;
             }
         }
     }
