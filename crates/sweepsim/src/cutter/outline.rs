@@ -25,14 +25,6 @@ pub(crate) enum Shape {
     },
 }
 
-/// What is monotone over each part of an arc.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Monotone {
-    Radius,
-    Height,
-    Both,
-}
-
 /// A piece of the outline with a closed form.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
@@ -183,8 +175,8 @@ impl Piece {
         })
     }
 
-    /// The parts of an arc, by ascending angle: angle and `(ρ, ζ)` at both ends of each.
-    pub(crate) fn monotone(&self, what: Monotone) -> Vec<[(f64, [f64; 2]); 2]> {
+    /// The parts of an arc over which radius and height are monotone, by ascending angle: angle and `(ρ, ζ)` at both ends of each.
+    pub(crate) fn quarters(&self) -> Vec<[(f64, [f64; 2]); 2]> {
         let Shape::Arc {
             centre,
             radius,
@@ -199,20 +191,12 @@ impl Piece {
         } else {
             [self.to, self.from]
         };
-        let (least, period, quarters) = match what {
-            Monotone::Radius => (0.0, PI, [0, 2]),
-            Monotone::Height => (FRAC_PI_2, PI, [1, 2]),
-            Monotone::Both => (0.0, FRAC_PI_2, [0, 1]),
-        };
-        let number = |angle: f64| (angle - least) / period;
+        let number = |angle: f64| angle / FRAC_PI_2;
         let mut places = vec![(first, low)];
         for cut in number(first).floor() as i64 + 1..number(last).ceil() as i64 {
-            let quarter = (quarters[0] + quarters[1] * cut).rem_euclid(4);
-            let [e, f] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][quarter as usize];
-            places.push((
-                cut as f64 * period + least,
-                [centre[0] + radius * e, centre[1] + radius * f],
-            ));
+            let [e, f] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][cut.rem_euclid(4) as usize];
+            let place = [centre[0] + radius * e, centre[1] + radius * f];
+            places.push((cut as f64 * FRAC_PI_2, place));
         }
         places.push((last, high));
         places.windows(2).map(|pair| [pair[0], pair[1]]).collect()

@@ -15,9 +15,9 @@ mod curves;
 mod discs;
 mod grazing;
 mod level_arcs;
+mod quarter;
 mod rows;
 mod straight;
-mod stretches;
 mod vertical_arcs;
 
 pub(crate) use at_rest::{Neighbour, leaning, placements};

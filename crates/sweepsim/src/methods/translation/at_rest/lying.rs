@@ -1,6 +1,6 @@
 //! A torus at rest whose axis is perpendicular to the dexels: a line is at one height along the axis, where the torus has a circle or two.
 
-use super::super::stretches::{HeightRange, Stretch};
+use super::super::quarter::{HeightRange, Quarter};
 use super::cone_sign_changes::{Wedge, wedges_between};
 use super::leaning::{Leaning, LeaningPoint, Points};
 use crate::algebra::certain::certainly_within;
@@ -15,35 +15,35 @@ const AZIMUTH: f64 = 1e-7;
 impl Leaning<'_, '_> {
     /// `None` if there is no closed form.
     pub(super) fn lying(&mut self, piece: &Piece) -> Option<()> {
-        for stretch in Stretch::all(piece)? {
-            for part in stretch.parts() {
+        for quarter in Quarter::all(piece, self.floor.rounding, false)? {
+            for part in quarter.parts() {
                 let Some(normals) = part.normals else {
-                    self.rings(&stretch, &part, None);
+                    self.rings(&quarter, &part, None);
                     continue;
                 };
                 let wedges = wedges_between(normals, &self.sides);
                 for wedge in &wedges {
-                    self.rings(&stretch, &part, Some((wedge, wedges.len() > 1)));
+                    self.rings(&quarter, &part, Some((wedge, wedges.len() > 1)));
                 }
             }
         }
         Some(())
     }
 
-    /// A part of a stretch, within a wedge if there is one, which may be one of many.
-    fn rings(&mut self, stretch: &Stretch, part: &HeightRange, wedge: Option<(&Wedge, bool)>) {
+    /// A part of a quarter, within a wedge if there is one, which may be one of many.
+    fn rings(&mut self, quarter: &Quarter, part: &HeightRange, wedge: Option<(&Wedge, bool)>) {
         let ([s, _], slack) = (self.tilt, self.floor.rounding);
-        let reach = stretch.radii[1];
-        let across = wedge.map_or([-reach, reach], |(wedge, _)| wedge.across(stretch.radii));
-        let [low, high] = [0, 1].map(|k| s * stretch.heights[k].clamp(part.heights[0], part.heights[1]));
+        let (heights, reach) = (quarter.heights(), quarter.radii[1]);
+        let across = wedge.map_or([-reach, reach], |(wedge, _)| wedge.across(quarter.radii));
+        let [low, high] = [0, 1].map(|k| s * heights[k].clamp(part.heights[0], part.heights[1]));
         self.visit([across, [low, high]], |q, b| {
             let height = q / s;
-            let inside = certainly_within(height, stretch.heights, 8.0 * slack);
+            let inside = certainly_within(height, heights, 8.0 * slack);
             let here = height >= part.heights[0] && height < part.heights[1];
             if inside == Some(false) || !here {
                 return Points::Two([None, None]);
             }
-            let Some(ring) = stretch.at(height, slack) else {
+            let Some(ring) = quarter.ring(height, slack) else {
                 return Points::Tangent;
             };
             let rho = ring.radius;

@@ -5,7 +5,7 @@ use super::super::Ceiling;
 use super::super::curves::stands;
 use super::ball_sign_changes::Lune;
 use super::radial::{Hypot, Radial, Stretch, StretchPoint};
-use crate::cutter::outline::{Monotone, Outline, Piece, Shape};
+use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::{Collector, unit};
 use crate::methods::sheets::numbers;
 use crate::time::path_parts::PathPart;
@@ -110,7 +110,7 @@ impl Placed<'_, '_> {
             Shape::Arc {
                 centre, radius, out, ..
             } => {
-                for [(from, _), (to, _)] in piece.monotone(Monotone::Radius) {
+                for [(from, _), (to, _)] in piece.quarters() {
                     let rho = [from, to].map(|angle| centre[0] + radius * angle.cos());
                     let arc = Radial::Arc {
                         centre,

@@ -4,8 +4,8 @@ use super::{Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::{Ball, Piece};
 use crate::methods::sheets::Undecided::{self, Close};
-use crate::methods::sheets::intervals::{Range, mul, scaled, wider};
-use crate::methods::translation::stretches::Stretch;
+use crate::methods::sheets::intervals::{Range, hull, mul, scaled, wider};
+use crate::methods::translation::quarter::Quarter;
 use sweepsim_dexel::Source;
 
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
@@ -83,26 +83,25 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// A piece of a tool whose axis is perpendicular to the arc's plane: a line meets only the circle at its own height along the axis. `None` if there is no closed form.
     pub(super) fn slices(&mut self, piece: &Piece) -> Option<()> {
-        for stretch in &Stretch::all(piece)? {
+        for quarter in &Quarter::all(piece, self.slack, false)? {
             for side in [1.0, -1.0] {
-                self.slice(stretch, side);
+                self.slice(quarter, side);
             }
         }
         Some(())
     }
 
-    /// The outer or the inner circles that a stretch sweeps.
-    fn slice(&mut self, stretch: &Stretch, side: f64) {
+    /// The outer or the inner circles that a quarter sweeps.
+    fn slice(&mut self, quarter: &Quarter, side: f64) {
         let ([.., ap, _], arc, slack) = (self.axis, self.arc, self.slack);
-        let [inner, outer] = stretch.radii.map(|rho| arc.radius + side * rho);
-        let wide = END * slack;
-        let radii = [inner.min(outer), inner.max(outer)];
-        let swept = wider(mul(radii, self.directions[0]), wide);
-        let ranges = [wider(scaled(ap, stretch.heights), wide), swept];
+        let [inner, outer] = quarter.radii.map(|rho| arc.radius + side * rho);
+        let (heights, wide) = (quarter.heights(), END * slack);
+        let swept = wider(mul(hull(inner, outer), self.directions[0]), wide);
+        let ranges = [wider(scaled(ap, heights), wide), swept];
         self.each(arc.centre, ranges, |own, line, [q, p]| {
             let height = ap * p;
-            let inside = certainly_within(height, stretch.heights, wide);
-            let ring = match (inside, stretch.at(height, slack)) {
+            let inside = certainly_within(height, heights, wide);
+            let ring = match (inside, quarter.ring(height, slack)) {
                 (Some(false), _) => return Ok(()),
                 (Some(true), Some(ring)) => ring,
                 _ if q >= swept[0] - wide && q <= swept[1] + wide => return Err(Close),

@@ -9,9 +9,9 @@
 //! ```
 
 use super::Rolling;
-use super::quarter::{Profile, Quarter};
 use super::roots::{Bounds, Curve, CurvePoint};
 use crate::methods::sheets::intervals::{hull, mul, scaled, square};
+use crate::methods::translation::quarter::{Profile, Quarter};
 use std::f64::consts::FRAC_PI_2;
 
 /// Of a quadrant of the arc, the range of angles on it.
@@ -351,7 +351,7 @@ mod tests {
             let piece = Piece { from: ends[0], to: ends[1], shape, patches: 0..0 };
             let turns = [PI, 3.0 * PI].iter().any(|left| (from..from + angle).contains(left));
             prop_assume!(!(round && turns && centre < tube) && ends.iter().all(|end| end[0] > 0.01));
-            for quarter in Quarter::all(&piece, 1e-14).unwrap_or_default() {
+            for quarter in Quarter::all(&piece, 1e-14, false).unwrap_or_default() {
                 let crossing = Crossing::new(&quarter, (r, 1e-14), place, quadrant);
                 let first = quadrant as f64 * FRAC_PI_2;
                 let Some([from, to]) = crossing.angles_between_ends([first, first + FRAC_PI_2]) else { continue };

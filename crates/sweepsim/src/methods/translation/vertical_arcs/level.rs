@@ -5,13 +5,13 @@
 //! sign of the second derivative of the height.
 
 use super::crosswise::{Crossing, CrosswisePoint};
-use super::quarter::Quarter;
 use super::roots::{Root, Search};
 use super::{CERTAIN, Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
 use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, scaled};
+use crate::methods::translation::quarter::Quarter;
 use sweepsim_dexel::Source;
 
 /// The face of a tool over a line at one time.

@@ -16,13 +16,13 @@ mod circles;
 mod crosswise;
 mod edges;
 mod level;
-mod quarter;
 mod roots;
 mod section;
 mod walls;
 
 use super::Ceiling;
 use super::arc_place::ArcPlace;
+use super::quarter::{Quarter, STEEPEST};
 use super::rows::{Floor, Row, rows};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::{Collector, unit};
@@ -30,7 +30,6 @@ use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, hull};
 use crate::time::circles::VerticalArc;
 use nalgebra::Vector3;
-use quarter::Quarter;
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
@@ -169,19 +168,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                     self.wall(radius, heights, out);
                 }
             }
+            (_, Shape::Line { normal: [_, up] }) if up.abs() <= STEEPEST => return None,
             _ => {
-                for quarter in &Quarter::all(piece, self.slack)? {
-                    let [low, high] = if stance == Stance::Upright {
-                        quarter.radii
-                    } else {
-                        quarter.ends
-                    };
-                    // What is shorter is at most an end of its neighbour.
-                    if high - low > self.slack {
-                        match stance {
-                            Stance::Level => self.level_quarter(quarter),
-                            _ => self.quarter(quarter, stance == Stance::Within),
-                        }
+                for quarter in &Quarter::all(piece, self.slack, stance == Stance::Upright)? {
+                    match stance {
+                        Stance::Level => self.level_quarter(quarter),
+                        _ => self.quarter(quarter, stance == Stance::Within),
                     }
                 }
             }

@@ -3,11 +3,11 @@
 //! In such a plane at the distance `p` from the axis, the section is `(v, ζ)` with `v² = ρ² − p²`. With the unit normal `(e, f)` of the meridian and `D = v² + f² p²`, that of the section is `(e v, f ρ)/√D`.
 //! The unknown is what is horizontal: `v`, ahead of the axis of an upright tool or, mirrored, behind it; or the height along the axis of one that lies, whose section has two halves, mirror images of each other.
 
-use super::quarter::{MeridianPoint, Quarter};
 use super::roots::{Bounds, Curve, CurvePoint, Root, Search};
 use super::{ROUNDING, Rolling};
 use crate::methods::sheets::Undecided;
 use crate::methods::sheets::intervals::{Range, hull, scaled};
+use crate::methods::translation::quarter::{MeridianPoint, Quarter};
 use sweepsim_dexel::Source;
 
 /// A vanishing distance is beyond doubt from so many times its error on.
@@ -333,7 +333,7 @@ mod tests {
         /// `Q′` is the derivative, `ν` the normal, and both are within their bounds; the section starts where it is said to.
         #[test]
         fn bounds_hold(piece in pieces(), share in 0.01..1.0_f64, r in 0.1..9.0_f64, positive in any::<bool>(), places in [0.0..1.0_f64, 0.0..1.0], lying in any::<bool>()) {
-            for quarter in &Quarter::all(&piece, 1e-14).unwrap_or_default() {
+            for quarter in &Quarter::all(&piece, 1e-14, !lying).unwrap_or_default() {
                 let Quarter { ends, climb, .. } = *quarter;
                 let p = quarter.radii[1] * share;
                 let side = if positive { 1.0 } else { -1.0 };

@@ -1,10 +1,14 @@
-//! A stretch of a cone or torus with one height at each radius and one radius at each height.
+//! A stretch of a cone, a torus or a cylinder with one radius at each height and, but for cylinders, one height at each radius.
 
-use crate::cutter::outline::{Monotone, Piece, Shape};
-use crate::methods::sheets::intervals::{Range, hull};
+use crate::cutter::outline::{Piece, Shape};
+use crate::methods::sheets::intervals::{Range, hull, scaled};
 
-/// Cones are left to charts that are flatter or steeper than this.
+/// Cones are left to charts that are flatter than this,
 const FLATTEST: f64 = 1e-6;
+/// and where walls have no closed form, those that are steeper.
+pub(super) const STEEPEST: f64 = 1e-6;
+/// An arc is flat where its normal is nearer to the axis than 90° less this angle.
+const FLAT: f64 = 1.52;
 /// So are tori that are smaller than so many rounding errors.
 const SMALLEST: f64 = 1e6;
 
@@ -41,9 +45,36 @@ pub(super) struct MeridianPoint {
     pub square: f64,
 }
 
+/// The circle at a height.
+pub(super) struct Ring {
+    pub radius: f64,
+    /// How far off it may be, for each unit of the height's error.
+    pub rate: f64,
+    /// The same for the slope of the normal, `n_ζ/n_ρ`.
+    pub turn: f64,
+    pub normal: [f64; 2],
+}
+
+/// A range of heights.
+pub(super) struct HeightRange {
+    /// The first one counts, the last one does not.
+    pub heights: Range,
+    /// At both ends, if the arc is flat nowhere between.
+    pub normals: Option<[[f64; 2]; 2]>,
+}
+
 impl Quarter {
-    /// Those of a cone or a torus, in any order. `None` for other pieces, and for those that almost have no width.
-    pub fn all(piece: &Piece, slack: f64) -> Option<Vec<Self>> {
+    /// Those of a piece, in any order. `None` for discs and for what is almost one, or almost nothing. Left out is what is at most an end of its neighbour, by its radii if they are what tells, or by its heights.
+    pub fn all(piece: &Piece, slack: f64, by_radius: bool) -> Option<Vec<Self>> {
+        let counts = |own: &Self| {
+            let [low, high] = if by_radius { own.radii } else { own.ends };
+            high - low > slack
+        };
+        let quarters = Self::of(piece, slack)?;
+        Some(quarters.into_iter().filter(counts).collect())
+    }
+
+    fn of(piece: &Piece, slack: f64) -> Option<Vec<Self>> {
         match piece.shape {
             Shape::Line { normal } => {
                 let cone = |radii: Range, ends: Range, _| Profile::Cone {
@@ -51,8 +82,7 @@ impl Quarter {
                     rate: (radii[1] - radii[0]) / (ends[1] - ends[0]),
                 };
                 let own = Self::new([piece.from, piece.to], (normal, 1.0, 0.0), cone);
-                let wide = [own.radii, own.ends].iter().all(|[low, high]| low < high);
-                (wide && normal.iter().all(|c| c.abs() > FLATTEST)).then(|| vec![own])
+                (own.ends[0] < own.ends[1] && normal[0].abs() > FLATTEST).then(|| vec![own])
             }
             Shape::Arc {
                 centre, radius, out, ..
@@ -66,7 +96,7 @@ impl Quarter {
                     let (f, e) = (0.5 * (from + to)).sin_cos();
                     Self::new([a, b], ([e, f], out, radius.recip()), torus)
                 };
-                piece.monotone(Monotone::Both).into_iter().map(quarter).collect()
+                piece.quarters().into_iter().map(quarter).collect()
             }),
         }
     }
@@ -139,6 +169,69 @@ impl Quarter {
         match self.profile {
             Profile::Cone { rate, .. } => self.climb * (self.ends[0] + (at.rho - self.radii[0]) / rate),
             Profile::Torus { level, tube, .. } => self.climb * level + self.signs[1] * tube * at.square.sqrt(),
+        }
+    }
+
+    /// Ascending.
+    pub fn heights(&self) -> Range {
+        scaled(self.climb, self.ends)
+    }
+
+    /// `None` where it is almost perpendicular to the axis.
+    #[inline]
+    pub fn ring(&self, height: f64, slack: f64) -> Option<Ring> {
+        let x = self.climb * height;
+        let MeridianPoint { rho, e, square } = self.at_height(x);
+        let (rate, turn, f) = match self.profile {
+            Profile::Cone { normal: [e, f], .. } => ((f / e).abs(), 0.0, f),
+            Profile::Torus { level, tube, .. } => {
+                let wide = (e * tube).abs();
+                if !(wide * wide > 512.0 * slack * (tube + slack)) {
+                    return None;
+                }
+                let turn = tube * tube / (wide * wide * wide);
+                ((x - level).abs() / wide, turn, self.signs[1] * square.sqrt())
+            }
+        };
+        Some(Ring {
+            radius: rho,
+            rate,
+            turn,
+            normal: [self.out * e, self.out * f],
+        })
+    }
+
+    /// Its parts by height, ascending and without gaps: where an arc is not [`FLAT`], with the normals at the ends of the part.
+    pub fn parts(&self) -> Vec<HeightRange> {
+        let all = [f64::NEG_INFINITY, f64::INFINITY];
+        let part = |heights, normals| HeightRange { heights, normals };
+        let [low, high] = self.heights();
+        let [side, up] = self.signs;
+        let (centre, tube) = match self.profile {
+            Profile::Cone { normal, .. } => return vec![part(all, Some([normal; 2]))],
+            Profile::Torus { level, tube, .. } => (self.climb * level, tube),
+        };
+        let (rise, wide) = FLAT.sin_cos();
+        let normal = |height: f64| {
+            let f = ((height - centre) / tube).clamp(-rise, rise);
+            let e = (1.0 - f * f).sqrt().max(wide);
+            [self.out * side * e, self.out * f]
+        };
+        let normals = |a: f64, b: f64| Some([normal(a), normal(b)]);
+        // From there on to the end where `f` is `up`.
+        let flat = centre + up * tube * rise;
+        let [steep, flats] = if up > 0.0 {
+            [[all[0], flat], [flat, all[1]]]
+        } else {
+            [[flat, all[1]], [all[0], flat]]
+        };
+        match (up * (low - flat) < 0.0, up * (high - flat) < 0.0) {
+            (true, true) => vec![part(all, normals(low, high))],
+            (false, false) => vec![part(all, None)],
+            _ => vec![
+                part(steep, normals(low.max(steep[0]), high.min(steep[1]))),
+                part(flats, None),
+            ],
         }
     }
 
