@@ -8,7 +8,8 @@ use crate::methods::lattice::Lattice;
 /// Blocks of so few lines are visited line by line.
 const FEW: usize = 24;
 
-/// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is greater than the last.
+/// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is
+/// greater than the last.
 #[inline]
 pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
     let window = if axis == 0 { lines.i } else { lines.j };
@@ -29,8 +30,9 @@ pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Op
     (a <= b as usize).then_some([a, b as usize])
 }
 
-/// Visits the lines with `x` and `y` in these ranges that are asked for, except for blocks of which nothing is `wanted`, given their ranges of `x` and `y`; with what is wanted of their block.
-/// Those that are too close are left open, without crossings; those that are intricate are returned.
+/// Visits the lines with `x` and `y` in these ranges that are asked for, except for blocks of which nothing is
+/// `wanted`, given their ranges of `x` and `y`; with what is wanted of their block. Those that are too close are left
+/// open, without crossings; those that are intricate are returned.
 pub(crate) fn search_lines<'a, W: Copy>(
     collector: &mut Collector<'a>,
     area: [Range; 2],

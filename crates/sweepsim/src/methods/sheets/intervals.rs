@@ -2,7 +2,8 @@
 
 pub(crate) type Range = [f64; 2];
 
-/// The smaller of two numbers, by one instruction: `f64::min` takes five for NaN. Here, NaN on one side may be dropped as well.
+/// The smaller of two numbers, by one instruction: `f64::min` takes five for NaN. Here, NaN on one side may be dropped
+/// as well.
 #[inline]
 fn low(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

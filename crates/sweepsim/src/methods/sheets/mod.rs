@@ -1,5 +1,7 @@
-//! What searches of sheets share. A sheet is one of the points at which a line meets a piece of the moving tool, as a function of one unknown, mostly the time. Its zeros are wanted, each exactly once:
-//! lines are visited block by block where a block may have any ([`search_lines`]), and each zero is found in a bracket in which it is the only one ([`newton`]).
+//! What searches of sheets share. A sheet is one of the points at which a line meets a piece of the moving tool, as a
+//! function of one unknown, mostly the time. Its zeros are wanted, each exactly once: lines are visited block by block
+//! where a block may have any ([`search_lines`]), and each zero is found in a bracket in which it is the only one
+//! ([`newton`]).
 
 mod blocks;
 pub(crate) mod intervals;

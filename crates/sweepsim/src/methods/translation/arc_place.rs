@@ -17,7 +17,8 @@ impl<T> ArcPlace<T> {
         [cosine, sine]
     }
 
-    /// Of a turn from the start, as a complex number of any length, on an arc with this [`end`](Self::end). `error`: of the sine.
+    /// Of a turn from the start, as a complex number of any length, on an arc with this [`end`](Self::end). `error`: of
+    /// the sine.
     #[inline]
     pub fn new(
         [cosine, sine]: [f64; 2],

@@ -1,4 +1,5 @@
-//! A stretch of a cone, a torus or a cylinder with one radius at each height and, but for cylinders, one height at each radius.
+//! A stretch of a cone, a torus or a cylinder with one radius at each height and, but for cylinders, one height at each
+//! radius.
 
 use crate::cutter::outline::{Piece, Shape};
 use crate::methods::sheets::intervals::{Range, hull, scaled};
@@ -64,7 +65,8 @@ pub(super) struct HeightRange {
 }
 
 impl Quarter {
-    /// Those of a piece, in any order. `None` for discs and for what is almost one, or almost nothing. Left out is what is at most an end of its neighbour, by its radii if they are what tells, or by its heights.
+    /// Those of a piece, in any order. `None` for discs and for what is almost one, or almost nothing. Left out is what
+    /// is at most an end of its neighbour, by its radii if they are what tells, or by its heights.
     pub fn all(piece: &Piece, slack: f64, by_radius: bool) -> Option<Vec<Self>> {
         let counts = |own: &Self| {
             let [low, high] = if by_radius { own.radii } else { own.ends };
@@ -201,7 +203,8 @@ impl Quarter {
         })
     }
 
-    /// Its parts by height, ascending and without gaps: where an arc is not [`FLAT`], with the normals at the ends of the part.
+    /// Its parts by height, ascending and without gaps: where an arc is not [`FLAT`], with the normals at the ends of
+    /// the part.
     pub fn parts(&self) -> Vec<HeightRange> {
         let all = [f64::NEG_INFINITY, f64::INFINITY];
         let part = |heights, normals| HeightRange { heights, normals };

@@ -184,7 +184,7 @@ impl Shell for Cylinder {
     }
 
     fn at_rest(&self, moment: &Moment, slack: f64) -> Option<(Lean, CylinderLimits)> {
-        let pose = Lean::new(moment)?;
+        let pose = Lean::new(moment);
         let (rate, [s, k]) = (moment.rate.norm(), pose.tilt);
         let height = self.reach() + self.radius / s;
         let across = moment.across() + rate * height;
@@ -208,7 +208,7 @@ impl Shell for Cylinder {
     }
 
     fn at(&self, moment: &Moment) -> Lean {
-        Lean::of(moment)
+        Lean::new(moment)
     }
 
     #[inline]

@@ -87,7 +87,8 @@ pub(super) struct DiscLimits {
     /// `|G|` below this may be rounding, unless it is a product.
     doubt: f64,
     product: bool,
-    /// Bounds of the second derivative of the centre, and of how fast `⟨V, a⟩` at the centre and [`Placed::falls`] change.
+    /// Bounds of the second derivative of the centre, and of how fast `⟨V, a⟩` at the centre and [`Placed::falls`]
+    /// change.
     bow: f64,
     rates: [f64; 2],
     /// How fast velocities turn.

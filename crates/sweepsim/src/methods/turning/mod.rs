@@ -1,8 +1,10 @@
 //! Moves that turn the tool, line by line: see `docs/algorithms/turning.md`.
 //!
-//! Legend: `a(t)` the tool's axis and `b(t)` its tip, `V` the velocity of a point of the tool, `G` a positive multiple of `g = ⟨n, V⟩` on a surface of the tool where a line meets it, `z`
-//! along the dexels. Of a tool of revolution, balls, cylinders about the axis, discs and sharp edges are solved: a line meets each of them in closed form at any time, and `G` has one unknown, the
-//! time. Its sign at the ends of a short span tells whether it is 0 in between, where a bound of its slope holds for all lines. What is not certain is left to charts, for the lines and the span of
+//! Legend: `a(t)` the tool's axis and `b(t)` its tip, `V` the velocity of a point of the tool, `G` a positive multiple
+//! of `g = ⟨n, V⟩` on a surface of the tool where a line meets it, `z` along the dexels. Of a tool of revolution,
+//! balls, cylinders about the axis, discs and sharp edges are solved: a line meets each of them in closed form at any
+//! time, and `G` has one unknown, the time. Its sign at the ends of a short span tells whether it is 0 in between,
+//! where a bound of its slope holds for all lines. What is not certain is left to charts, for the lines and the span of
 //! time in question.
 
 mod axis_motion;
@@ -94,7 +96,8 @@ impl Kind {
     }
 }
 
-/// The envelope and the edges of a tool along a segment that turns. Marks what it settles as done; the rest of that is for charts.
+/// The envelope and the edges of a tool along a segment that turns. Marks what it settles as done; the rest of that is
+/// for charts.
 pub(crate) fn envelope(
     outline: &Outline,
     segment: &Segment,

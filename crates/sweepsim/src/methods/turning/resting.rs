@@ -1,4 +1,5 @@
-//! The tool at rest between two motions, of which one turns: where a line meets it, and the signs of `g` before and after.
+//! The tool at rest between two motions, of which one turns: where a line meets it, and the signs of `g` before and
+//! after.
 
 use super::Searching;
 use super::axis_motion::Moment;

@@ -1,8 +1,10 @@
-//! A surface that a line enters and leaves, in the course of time: how its two sheets over a line move, and where they turn.
+//! A surface that a line enters and leaves, in the course of time: how its two sheets over a line move, and where they
+//! turn.
 //!
-//! On each sheet, `g` has the sign of the speed at which the surface moves outwards. A sheet that begins (the line comes under the surface from the side) begins
-//! with `g > 0`, one that ends does so with `g < 0`. Where `g` falls whenever it is 0, a sheet that exists without interruption therefore has at most one zero, and
-//! has one if `g > 0` at its beginning and `g < 0` at its end: the signs at the ends of a span decide.
+//! On each sheet, `g` has the sign of the speed at which the surface moves outwards. A sheet that begins (the line
+//! comes under the surface from the side) begins with `g > 0`, one that ends does so with `g < 0`. Where `g` falls
+//! whenever it is 0, a sheet that exists without interruption therefore has at most one zero, and has one if `g > 0` at
+//! its beginning and `g < 0` at its end: the signs at the ends of a span decide.
 
 mod search;
 
@@ -72,7 +74,8 @@ pub(super) struct ShellPoint {
     pub error: f64,
 }
 
-/// A surface of the tool, extended beyond the ends of its piece: a closed one, or a plane, whose other sheet is absent. Sheets: 0 is below, 1 above.
+/// A surface of the tool, extended beyond the ends of its piece: a closed one, or a plane, whose other sheet is absent.
+/// Sheets: 0 is below, 1 above.
 pub(super) trait Shell {
     /// What it needs to know of a moment.
     type Posed: Copy;
@@ -115,7 +118,8 @@ pub(super) trait Shell {
     /// The derivatives of `g` along x and y, at one time.
     fn gradient(&self, at: &Self::Posed, meeting: &Meeting, sheet: usize) -> [f64; 2];
 
-    /// How fast points of the surface move, and how fast Newton's method is: where `g` has this slope, a step of `δ` leaves `pace δ²`, and the normal turns by no more than `pace δ`.
+    /// How fast points of the surface move, and how fast Newton's method is: where `g` has this slope, a step of `δ`
+    /// leaves `pace δ²`, and the normal turns by no more than `pace δ`.
     fn pace(&self, limits: &Self::Limits, at: &Self::Posed, meeting: &Meeting, slope: f64) -> [f64; 2];
 
     /// The point of a sheet where it turns, a time `step` later, with the derivative of the height now.

@@ -32,7 +32,8 @@ pub(super) enum Verdict {
     Settled(Vec<u32>),
     /// It is too long, or charts have to solve it.
     Long,
-    /// It is too long, since the axis is almost upright on the way: halves lean half as much, or their axis turns about the vertical half as much.
+    /// It is too long, since the axis is almost upright on the way: halves lean half as much, or their axis turns about
+    /// the vertical half as much.
     Upright,
     /// Charts have to solve it, and its halves, too.
     Intricate,

@@ -13,7 +13,8 @@ pub(super) struct Sample<T> {
     pub state: T,
 }
 
-/// The zero of the cubic that has the given values at the ends, as a function of the value, and the given slopes, if that is in the bracket; otherwise that of the line.
+/// The zero of the cubic that has the given values at the ends, as a function of the value, and the given slopes, if
+/// that is in the bracket; otherwise that of the line.
 fn guess(bracket: [f64; 2], [[a, da], [b, db]]: [[f64; 2]; 2]) -> f64 {
     let way = bracket[1] - bracket[0];
     let share = a / (a - b);
@@ -87,7 +88,8 @@ pub(super) struct Turn {
     pub normal: Vector3<f64>,
 }
 
-/// Where to start without a zero that is known: `ends` are the values and slopes at the ends of the bracket, where the function exists.
+/// Where to start without a zero that is known: `ends` are the values and slopes at the ends of the bracket, where the
+/// function exists.
 pub(super) fn start(bracket: [f64; 2], ends: [Option<[f64; 2]>; 2]) -> f64 {
     match ends {
         [Some(a), Some(b)] => guess(bracket, [a, b]),
@@ -98,8 +100,9 @@ pub(super) fn start(bracket: [f64; 2], ends: [Option<[f64; 2]>; 2]) -> f64 {
     }
 }
 
-/// Newton's method in a bracket, from `start` if that is inside. `at` gives the function, or `None` where it does not exist: then it does not on one side of the bracket, which is not `there`.
-/// `done(time, step, sample)` is asked for the result before each step to a time, and refuses as long as steps have to become smaller.
+/// Newton's method in a bracket, from `start` if that is inside. `at` gives the function, or `None` where it does not
+/// exist: then it does not on one side of the bracket, which is not `there`. `done(time, step, sample)` is asked for
+/// the result before each step to a time, and refuses as long as steps have to become smaller.
 #[inline]
 pub(super) fn zero<T, R>(
     bracket: [f64; 2],

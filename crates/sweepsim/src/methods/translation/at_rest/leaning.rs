@@ -1,17 +1,20 @@
-//! The tool at rest between two moves, not along the dexels: a line meets a plane of it once, a cone, a cylinder or a ball up to twice.
+//! The tool at rest between two moves, not along the dexels: a line meets a plane of it once, a cone, a cylinder or a
+//! ball up to twice.
 //!
-//! Coordinates of the tool: `a` across its axis, in the vertical plane of it, with the dexels' direction `(s, 0, k)`; `b` across both, so horizontal; `ζ` along
-//! the axis. Seen from the tip, a line is at `q` along the horizontal part of the axis, and at `b` across it. In the tool's coordinates it is
+//! Coordinates of the tool: `a` across its axis, in the vertical plane of it, with the dexels' direction `(s, 0, k)`;
+//! `b` across both, so horizontal; `ζ` along the axis. Seen from the tip, a line is at `q` along the horizontal part of
+//! the axis, and at `b` across it. In the tool's coordinates it is
 //!
 //! ```text
 //! s ζ = q + k a
 //! ```
 //!
-//! with one unknown, `a`. On a line of the meridian, `n_ρ ρ + n_ζ ζ = w`, so `(n_ρ s)² (a² + b²) = (u − n_ζ k a)²` with `u = s w − n_ζ q`. The slope of
-//! `n_ρ ρ + n_ζ ζ` along the dexel is that of the normal, `n_z`, by which all errors are divided.
+//! with one unknown, `a`. On a line of the meridian, `n_ρ ρ + n_ζ ζ = w`, so `(n_ρ s)² (a² + b²) = (u − n_ζ k a)²` with
+//! `u = s w − n_ζ q`. The slope of `n_ρ ρ + n_ζ ζ` along the dexel is that of the normal, `n_z`, by which all errors
+//! are divided.
 
 use super::super::curves::{Heading, Local};
-use super::super::rows::{Floor, Row, rows};
+use super::super::rows::Floor;
 use super::Neighbour;
 use super::cone_sign_changes::wedges;
 use super::cones::Cone;
@@ -28,7 +31,8 @@ const CLEAR: f64 = 64.0;
 /// Cones that are flatter than this, but no planes, are left to it, too.
 const FLAT: f64 = 1e-3;
 
-/// A side of the placement: the move there in the tool's coordinates, or whether the tool counts as moving inwards beyond an end.
+/// A side of the placement: the move there in the tool's coordinates, or whether the tool counts as moving inwards
+/// beyond an end.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AtRestSide {
     Along([f64; 3]),
@@ -226,36 +230,19 @@ impl Leaning<'_, '_> {
 
     /// The lines with `b` and `q` in these ranges; `meet` tells where each meets the surface.
     pub fn visit(&mut self, ranges: [[f64; 2]; 2], meet: impl Fn(f64, f64) -> Points) {
-        let lattice = self.lines.lines;
-        let floor = self.floor;
-        let [ux, uy] = floor.ahead;
-        let margin = 8.0 * floor.rounding;
-        let [across, along] = ranges.map(|[low, high]| [low - margin, high + margin]);
-        rows(lattice, &floor, ranges, |Row { i, j, x }| {
-            for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - floor.tip[1];
-                let (b, q) = (ux * y - uy * x, ux * x + uy * y);
-                if b < across[0] || b > across[1] || q < along[0] || q > along[1] {
-                    continue;
-                }
-                match meet(q, b) {
-                    Points::Tangent => {
-                        if lattice.asks(i, j) {
-                            self.lines.open(lattice.line(i, j));
-                        }
-                    }
-                    Points::Two(points) => {
-                        for point in points.into_iter().flatten() {
-                            self.point(&point, (i, j));
-                        }
-                    }
+        let (lattice, floor) = (self.lines.lines, self.floor);
+        floor.each(lattice, ranges, 8.0, |line, [b, q]| match meet(q, b) {
+            Points::Tangent => self.lines.open(line),
+            Points::Two(points) => {
+                for point in points.into_iter().flatten() {
+                    self.point(&point, line);
                 }
             }
         });
     }
 
     #[inline]
-    fn point(&mut self, point: &LeaningPoint, (i, j): (usize, usize)) {
+    fn point(&mut self, point: &LeaningPoint, line: usize) {
         if point.inside == Some(false) {
             return;
         }
@@ -263,11 +250,6 @@ impl Leaning<'_, '_> {
         if before.is_some() && before == after {
             return;
         }
-        let lattice = self.lines.lines;
-        if !lattice.asks(i, j) {
-            return;
-        }
-        let line = lattice.line(i, j);
         let (Some(before), Some(after), Some(true)) = (before, after, point.inside) else {
             self.lines.open(line);
             return;

@@ -1,4 +1,5 @@
-//! A torus at rest whose axis is perpendicular to the dexels: a line is at one height along the axis, where the torus has a circle or two.
+//! A torus at rest whose axis is perpendicular to the dexels: a line is at one height along the axis, where the torus
+//! has a circle or two.
 
 use super::super::quarter::{HeightRange, Quarter};
 use super::cone_sign_changes::{Wedge, wedges_between};
@@ -57,7 +58,8 @@ impl Leaning<'_, '_> {
             if !(square > CERTAIN * doubt) || (wedge.is_some() && 2.0 * off > AZIMUTH * half) {
                 return Points::Tangent;
             }
-            // Divided by its part across the axis, which may be small and inexact: of its sign nothing else depends on that.
+            // Divided by its part across the axis, which may be small and inexact: of its sign nothing else depends on
+            // that.
             let [n, m] = [1.0_f64.copysign(ring.normal[0]), ring.normal[1] / ring.normal[0].abs()];
             let error = [2.0 * doubt / (half * rho), 4.0 * slack * ring.turn];
             Points::Two([-half, half].map(|a| {

@@ -61,7 +61,7 @@ impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
         let lines = self.collector.lines;
         self.motion
             .floor
-            .each(lines, window, |line, _| self.collector.open(line));
+            .each(lines, window, 0.0, |line, _| self.collector.open(line));
     }
 
     /// A point of a chart.
@@ -113,7 +113,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
             window[0] = reach;
             spans = Some(found);
         }
-        floor.each(lines, window, |line, [p, q]| {
+        floor.each(lines, window, 0.0, |line, [p, q]| {
             let line = line as u32;
             let target = Target { p, q, line };
             let span = spans.as_mut().and_then(|spans| spans.find(target.p));

@@ -20,7 +20,8 @@ impl Floor {
         [x * ahead - y * left, y * ahead + x * left, up]
     }
 
-    /// `p` and `q` of a line from the tip, if they are in a window that is wider by so many times the rounding error. NaN is inside.
+    /// `p` and `q` of a line from the tip, if they are in a window that is wider by so many times the rounding error.
+    /// NaN is inside.
     #[inline]
     fn place_in(&self, [x, y]: [f64; 2], [p, q]: Window, margins: f64) -> Option<[f64; 2]> {
         let margin = margins * self.rounding;
@@ -30,13 +31,14 @@ impl Floor {
         (!(off(own[0], p) || off(own[1], q))).then_some(own)
     }
 
-    /// Calls `each` with the lines that are asked for in a window, and their `p` and `q`.
+    /// Calls `each` with the lines that are asked for in a window that is wider by so many times the rounding error,
+    /// and their `p` and `q`.
     #[inline]
-    pub fn each(&self, lines: &Lattice, window: Window, mut each: impl FnMut(usize, [f64; 2])) {
+    pub fn each(&self, lines: &Lattice, window: Window, margins: f64, mut each: impl FnMut(usize, [f64; 2])) {
         search(lines, self, window, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lines.coordinate(1, j) - self.tip[1];
-                if let Some(place) = self.place_in([x, y], window, 0.0)
+                if let Some(place) = self.place_in([x, y], window, margins)
                     && lines.asks(i, j)
                 {
                     each(lines.line(i, j), place);
@@ -46,8 +48,9 @@ impl Floor {
         });
     }
 
-    /// Whether lines that are asked for are in a window, up to rounding. It may be narrower than what [`numbers`](super::numbers) adds to it, so each line is looked at:
-    /// otherwise a cell that shrinks to a point would seem to have lines over it until rounding ends that.
+    /// Whether lines that are asked for are in a window, up to rounding. It may be narrower than what
+    /// [`numbers`](super::numbers) adds to it, so each line is looked at: otherwise a cell that shrinks to a point
+    /// would seem to have lines over it until rounding ends that.
     pub fn meets(&self, lines: &Lattice, window: Window) -> bool {
         search(lines, self, window, |Row { i, j, x }| {
             (j[0]..=j[1]).any(|j| {

@@ -1,4 +1,5 @@
-//! What has a circle in the section of a line by a plane along the arc: balls, and all of a tool whose axis is perpendicular to the arc's plane. It sweeps two circles about the arc's centre.
+//! What has a circle in the section of a line by a plane along the arc: balls, and all of a tool whose axis is
+//! perpendicular to the arc's plane. It sweeps two circles about the arc's centre.
 
 use super::{Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
@@ -9,7 +10,8 @@ use crate::methods::translation::quarter::Quarter;
 use sweepsim_dexel::Source;
 
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
-    /// Where a line meets the circle of radius `s`, which is off by `off` at most: both directions, with the error of the angle.
+    /// Where a line meets the circle of radius `s`, which is off by `off` at most: both directions, with the error of
+    /// the angle.
     #[inline]
     fn circle(
         &mut self,
@@ -81,7 +83,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         }
     }
 
-    /// A piece of a tool whose axis is perpendicular to the arc's plane: a line meets only the circle at its own height along the axis. `None` if there is no closed form.
+    /// A piece of a tool whose axis is perpendicular to the arc's plane: a line meets only the circle at its own height
+    /// along the axis. `None` if there is no closed form.
     pub(super) fn slices(&mut self, piece: &Piece) -> Option<()> {
         for quarter in &Quarter::all(piece, self.slack, false)? {
             for side in [1.0, -1.0] {
@@ -126,7 +129,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         });
     }
 
-    /// Leaves the lines open that lie in a plane across the axis, which is perpendicular to the arc's plane: no other line meets a disc or a sharp edge there.
+    /// Leaves the lines open that lie in a plane across the axis, which is perpendicular to the arc's plane: no other
+    /// line meets a disc or a sharp edge there.
     pub(super) fn flat(&mut self, height: f64, reach: f64) {
         let wide = END * self.slack;
         let place = self.axis[1] * height;

@@ -1,4 +1,5 @@
-//! Sharp edges along an arc: a line passes a circle about the tool's axis where it meets its plane at the radius from its centre.
+//! Sharp edges along an arc: a line passes a circle about the tool's axis where it meets its plane at the radius from
+//! its centre.
 
 use super::{Chord, Rolling};
 use crate::cutter::outline::Rim;

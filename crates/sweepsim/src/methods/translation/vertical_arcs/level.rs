@@ -1,8 +1,10 @@
-//! Arcs across the dexels of a tool whose axis lies in the arc's plane: as dexels along y see an arc of `G18` of a tool that stands along z.
+//! Arcs across the dexels of a tool whose axis lies in the arc's plane: as dexels along y see an arc of `G18` of a tool
+//! that stands along z.
 //!
-//! In this plane, `q` is the coordinate across the axis and `p` the one along it, from the arc's centre; the tip is at `r (cos θ, sin θ)`. A line is a point `(q, p)` there, seen from the tip at
-//! `x = q − r cos θ` and at the height `ζ = p − r sin θ`. The tool covers it as far as `y² = ρ² − x²` on both sides of the plane, and where `y` is extreme in time, there is the envelope: the jump is the
-//! sign of the second derivative of the height.
+//! In this plane, `q` is the coordinate across the axis and `p` the one along it, from the arc's centre; the tip is at
+//! `r (cos θ, sin θ)`. A line is a point `(q, p)` there, seen from the tip at `x = q − r cos θ` and at the height `ζ =
+//! p − r sin θ`. The tool covers it as far as `y² = ρ² − x²` on both sides of the plane, and where `y` is extreme in
+//! time, there is the envelope: the jump is the sign of the second derivative of the height.
 
 use super::crosswise::{Crossing, CrosswisePoint};
 use super::roots::{Root, Search};
@@ -83,7 +85,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         });
     }
 
-    /// A cylinder between two heights, whose normal is `out` across the axis: where it is widest, and all of it where the tool moves along its axis.
+    /// A cylinder between two heights, whose normal is `out` across the axis: where it is widest, and all of it where
+    /// the tool moves along its axis.
     pub(super) fn level_wall(&mut self, radius: f64, heights: Range, out: f64) {
         let [before, after] = self.rates.map(|rate| rate < 0.0);
         let turn = (before != after).then(|| self.turn([1.0, 0.0]));

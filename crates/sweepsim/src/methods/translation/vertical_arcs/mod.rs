@@ -1,16 +1,20 @@
 //! Arcs of the tip in a plane along the dexels, of a tool that does not turn.
 //!
-//! The line and the arc's plane are parallel, so that only the section of the tool at the distance `p` of the line from that plane matters, and how it is moved along a circle. In the
-//! plane, with `q` ahead of the arc's centre, `z` up, and the arc at `r (cos α, sin α)`:
+//! The line and the arc's plane are parallel, so that only the section of the tool at the distance `p` of the line from
+//! that plane matters, and how it is moved along a circle. In the plane, with `q` ahead of the arc's centre, `z` up,
+//! and the arc at `r (cos α, sin α)`:
 //!
-//! - the section of a ball of radius `R` is a circle of radius `ρ`, `ρ² = R² − p²`, which sweeps the circles of radii `s = r ± ρ` about the ball's centre at the centre of the arc:
-//!   a line meets them where `cos α = q/s`;
+//! - the section of a ball of radius `R` is a circle of radius `ρ`, `ρ² = R² − p²`, which sweeps the circles of radii
+//!   `s = r ± ρ` about the ball's centre at the centre of the arc: a line meets them where `cos α = q/s`;
 //! - a sharp edge of an upright tool is met at `±ρ` from its centre, and so where `r cos α = q ∓ ρ`;
 //! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never;
-//! - a tool whose axis is perpendicular to the arc's plane has a circle in each section, as a ball has, but for the normal;
-//! - the section of a cone or a torus of an upright tool sweeps the curves that are parallel to it at the distance `r`: one equation in one unknown for each line.
+//! - a tool whose axis is perpendicular to the arc's plane has a circle in each section, as a ball has, but for the
+//!   normal;
+//! - the section of a cone or a torus of an upright tool sweeps the curves that are parallel to it at the distance `r`:
+//!   one equation in one unknown for each line.
 //!
-//! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
+//! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along
+//! a line, but for a positive factor: it falls where `s > 0`.
 
 mod circles;
 mod crosswise;
@@ -23,7 +27,7 @@ mod walls;
 use super::Ceiling;
 use super::arc_place::ArcPlace;
 use super::quarter::{Quarter, STEEPEST};
-use super::rows::{Floor, Row, rows};
+use super::rows::Floor;
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::{Collector, unit};
 use crate::methods::sheets::Undecided::{self, Close};
@@ -111,7 +115,8 @@ struct Rolling<'a, 'b, S> {
     stance: Stance,
     /// The ranges of `cos α` and `sin α`.
     directions: [Range; 2],
-    /// The velocity along the dexels at the ends, but for positive factors; for a plane across them, that across the tool's axis.
+    /// The velocity along the dexels at the ends, but for positive factors; for a plane across them, that across the
+    /// tool's axis.
     rates: [f64; 2],
     /// What is this high above the tip is above the ceiling at all times.
     highest: f64,
@@ -202,25 +207,16 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         ranges: [Range; 2],
         mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> Result<(), Undecided>,
     ) {
-        let ahead = self.arc.ahead;
         let floor = Floor {
             tip,
-            ahead,
+            ahead: self.arc.ahead,
             rounding: self.slack,
         };
-        let lattice = self.lines.lines;
-        rows(lattice, &floor, ranges, |Row { i, j, x }| {
-            for j in j[0]..=j[1] {
-                if !lattice.asks(i, j) {
-                    continue;
-                }
-                let (y, line) = (lattice.coordinate(1, j) - tip[1], lattice.line(i, j));
-                let place = [ahead[0] * x + ahead[1] * y, ahead[0] * y - ahead[1] * x];
-                let mark = self.lines.mark();
-                if visit(self, line, place).is_err() {
-                    self.lines.forget(mark);
-                    self.lines.open(line);
-                }
+        floor.each(self.lines.lines, ranges, END, |line, [p, q]| {
+            let mark = self.lines.mark();
+            if visit(self, line, [q, p]).is_err() {
+                self.lines.forget(mark);
+                self.lines.open(line);
             }
         });
     }
@@ -248,7 +244,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         (square >= -doubt).then_some(Chord { half, off, certain })
     }
 
-    /// Where the velocity in a direction, that of the [`rates`](Self::rates), changes its sign: 1 if that is where the tip has gone farthest in it, −1 if it is farthest behind; and the share of the way.
+    /// Where the velocity in a direction, that of the [`rates`](Self::rates), changes its sign: 1 if that is where the
+    /// tip has gone farthest in it, −1 if it is farthest behind; and the share of the way.
     fn turn(&self, towards: [f64; 2]) -> (f64, f64) {
         let top = if self.rates[0] > self.rates[1] { 1.0 } else { -1.0 };
         let share = match self.place(towards.map(|c| top * c), 0.0) {
@@ -278,7 +275,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         }
     }
 
-    /// Of the directions with a cosine (0) or sine (1) that is known up to an error, the other one, which has both signs, and the error of the angles. `None` if they are not on the arc.
+    /// Of the directions with a cosine (0) or sine (1) that is known up to an error, the other one, which has both
+    /// signs, and the error of the angles. `None` if they are not on the arc.
     fn other(&self, k: usize, value: f64, error: f64) -> Result<Option<(f64, f64)>, Undecided> {
         let [low, high] = self.directions[k];
         let error = error + ROUNDING;

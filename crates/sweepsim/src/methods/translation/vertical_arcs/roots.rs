@@ -1,4 +1,5 @@
-//! The solutions of `Q(x) = y` for a curve parallel to a section: there is one where `Q′` has one sign, and the values at both ends are on different sides.
+//! The solutions of `Q(x) = y` for a curve parallel to a section: there is one where `Q′` has one sign, and the values
+//! at both ends are on different sides.
 
 use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::{halfway, newton};
@@ -66,7 +67,8 @@ pub(super) struct Search<C> {
     pub curve: C,
     /// The wanted value of `Q`.
     pub y: f64,
-    /// −1 if the curve is traversed backwards: behind the axis, the half has its start at the axis where the other has its end.
+    /// −1 if the curve is traversed backwards: behind the axis, the half has its start at the axis where the other has
+    /// its end.
     pub mirror: f64,
 }
 
@@ -89,7 +91,8 @@ impl<C: Curve> Search<C> {
         !((0.5 * (a.value() + b.value()) - self.y).abs() > reach || self.curve.vanishes_nowhere([a, b]))
     }
 
-    /// All solutions in a part of the section. The range of each of its ends; the range beyond which the envelope is not on the arc.
+    /// All solutions in a part of the section. The range of each of its ends; the range beyond which the envelope is
+    /// not on the arc.
     pub fn roots(
         &self,
         [from, to]: [[f64; 2]; 2],

@@ -1,7 +1,10 @@
-//! Cones and tori along an arc, of a tool whose axis is upright or lies in the arc's plane: the curves parallel to their sections by the planes of lines, at the distance of the arc's radius.
+//! Cones and tori along an arc, of a tool whose axis is upright or lies in the arc's plane: the curves parallel to
+//! their sections by the planes of lines, at the distance of the arc's radius.
 //!
-//! In such a plane at the distance `p` from the axis, the section is `(v, ζ)` with `v² = ρ² − p²`. With the unit normal `(e, f)` of the meridian and `D = v² + f² p²`, that of the section is `(e v, f ρ)/√D`.
-//! The unknown is what is horizontal: `v`, ahead of the axis of an upright tool or, mirrored, behind it; or the height along the axis of one that lies, whose section has two halves, mirror images of each other.
+//! In such a plane at the distance `p` from the axis, the section is `(v, ζ)` with `v² = ρ² − p²`. With the unit normal
+//! `(e, f)` of the meridian and `D = v² + f² p²`, that of the section is `(e v, f ρ)/√D`. The unknown is what is
+//! horizontal: `v`, ahead of the axis of an upright tool or, mirrored, behind it; or the height along the axis of one
+//! that lies, whose section has two halves, mirror images of each other.
 
 use super::roots::{Bounds, Curve, CurvePoint, Root, Search};
 use super::{ROUNDING, Rolling};
@@ -15,7 +18,8 @@ const CERTAIN: f64 = 64.0;
 /// Directions of the arc that are this close to level may be on the other side.
 const LEVEL: f64 = 1e-6;
 
-/// A curve parallel to a section, by its horizontal coordinate: `Q(x) = x + side r ν(x)` with the part `ν` of the normal along `x`.
+/// A curve parallel to a section, by its horizontal coordinate: `Q(x) = x + side r ν(x)` with the part `ν` of the
+/// normal along `x`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Section<'a> {
     quarter: &'a Quarter,
@@ -76,7 +80,8 @@ impl Section<'_> {
         if self.lying { -e } else { e }
     }
 
-    /// By how much `Q` is off: where the derivatives of `ν` and the error of `e` count. Infinite where that is not known.
+    /// By how much `Q` is off: where the derivatives of `ν` and the error of `e` count. Infinite where that is not
+    /// known.
     fn error(&self, [v, rho]: [f64; 2], square: f64, norm_sq: f64) -> f64 {
         let (p, bend) = (self.p.abs(), self.quarter.bend);
         if !self.known(rho, norm_sq) {
@@ -330,7 +335,8 @@ mod tests {
     }
 
     proptest! {
-        /// `Q′` is the derivative, `ν` the normal, and both are within their bounds; the section starts where it is said to.
+        /// `Q′` is the derivative, `ν` the normal, and both are within their bounds; the section starts where it is
+        /// said to.
         #[test]
         fn bounds_hold(piece in pieces(), share in 0.01..1.0_f64, r in 0.1..9.0_f64, positive in any::<bool>(), places in [0.0..1.0_f64, 0.0..1.0], lying in any::<bool>()) {
             for quarter in &Quarter::all(&piece, 1e-14, !lying).unwrap_or_default() {

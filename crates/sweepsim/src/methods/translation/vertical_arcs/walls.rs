@@ -1,4 +1,5 @@
-//! What is parallel to the arc's plane or to the dexels, and so moves along itself but where the tip turns back: all of it is met at once.
+//! What is parallel to the arc's plane or to the dexels, and so moves along itself but where the tip turns back: all of
+//! it is met at once.
 
 use super::{Chord, END, Rolling};
 use crate::algebra::certain::certainly_within;
@@ -33,7 +34,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         });
     }
 
-    /// A cylinder of a tool whose axis lies in the arc's plane, with a normal that is `out` across the axis: where the tool moves along its axis.
+    /// A cylinder of a tool whose axis lies in the arc's plane, with a normal that is `out` across the axis: where the
+    /// tool moves along its axis.
     pub(super) fn wall(&mut self, radius: f64, heights: Range, out: f64) {
         let jumps = [out, -out].map(|up| self.jump_at_turn(up));
         if jumps == [0; 2] {

@@ -23,10 +23,10 @@ const FEW: usize = 12;
 const TURNED: f64 = 1e-3;
 
 /// A line at one time.
-pub(super) struct View<'p, P> {
-    pub t: f64,
-    pub at: &'p P,
-    pub meeting: Meeting,
+struct View<'p, P> {
+    t: f64,
+    at: &'p P,
+    meeting: Meeting,
 }
 
 /// A search of a shell along one span of a motion.
@@ -51,7 +51,18 @@ pub(in crate::methods::turning) fn settle_shell<S: Shell>(
 ) -> Verdict {
     let (accuracy, spacing) = (searching.accuracy, searching.collector.lines.spacing());
     match shell.along(span, accuracy, spacing) {
-        Ok((limits, area)) => ShellSearch::new((shell, &limits), motion, source, accuracy).lines(searching, span, area),
+        Ok((limits, area)) => {
+            let mut search = ShellSearch {
+                shell,
+                limits: &limits,
+                motion,
+                accuracy,
+                source,
+                halvings: HALVINGS,
+                last: [None; 2],
+            };
+            search.lines(searching.collector, span, area)
+        }
         Err(verdict) => verdict,
     }
 }
@@ -64,29 +75,17 @@ struct Line {
     sheets: [bool; 2],
 }
 
-impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
-    pub fn new((shell, limits): (&'a S, &'a S::Limits), motion: &'a AxisMotion, source: F, accuracy: Accuracy) -> Self {
-        Self {
-            shell,
-            limits,
-            motion,
-            accuracy,
-            source,
-            halvings: HALVINGS,
-            last: [None; 2],
-        }
-    }
-
+impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
     /// The crossings of the lines of an area in a span.
-    fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
+    fn lines(&mut self, collector: &mut Collector, span: &Span, area: [Range; 2]) -> Verdict {
         let (shell, limits) = (self.shell, self.limits);
         let [a, b] = [&span.from, &span.to].map(|moment| shell.at(moment));
-        let (length, mark) = (span.bounds.length, searching.collector.mark());
+        let (length, mark) = (span.bounds.length, collector.mark());
         // If most lines are intricate, charts may as well have all of them.
         let hopeless = Cell::new(false);
         let [mut visited, mut intricate] = [0; 2];
         let left = search_lines(
-            searching.collector,
+            collector,
             area,
             |block| {
                 if hopeless.get() {
@@ -115,7 +114,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             },
         );
         if hopeless.get() {
-            searching.collector.forget(mark);
+            collector.forget(mark);
             return Verdict::Intricate;
         }
         Verdict::Settled(left)
@@ -192,7 +191,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         Ok(())
     }
 
-    /// The place where a sheet turns, of which there is exactly one, where `g` falls or rises: Newton's method in a bracket.
+    /// The place where a sheet turns, of which there is exactly one, where `g` falls or rises: Newton's method in a
+    /// bracket.
     fn turn(
         &mut self,
         collector: &mut Collector,
@@ -256,7 +256,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 let point = shell.point(posed, meeting, (sheet, sample.rise, step), slack);
                 let way = (speed + sample.rise.abs()) * step.abs();
                 let inside = certainly_within(point.along, ends, point.error + 2.0 * way)?;
-                // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
+                // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of
+                // third.
                 if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= height_tolerance) {
                     return None;
                 }
