@@ -176,8 +176,8 @@ impl Request {
         Self { limits, ..self }
     }
 
-    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots cost time: without a report, they are
-    /// not computed.
+    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots and what a certificate holds cost time:
+    /// without a report or a certificate, they are not computed.
     #[must_use]
     pub fn outputs(self, outputs: impl IntoIterator<Item = Output>) -> Self {
         let outputs = outputs.into_iter().collect();

@@ -19,6 +19,7 @@ use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::base::cache::{Digest, Key, RunCache};
+use crate::request::Output;
 use crate::session::Session;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
 use sweepsim_formats::{
@@ -31,9 +32,6 @@ const LISTED: usize = 100;
 
 /// What goes too deep may have to be lifted so many limits.
 const LIFTS: f64 = 2.5;
-
-/// Every proof is kept for a checker.
-const RECORDED: bool = true;
 
 /// A statement with the moves that were seen to break it.
 struct Proven {
@@ -57,7 +55,8 @@ type All = (Vec<Statement>, Vec<ReportedFinding>, Option<Certified>);
 struct Proof<'a> {
     session: Session<'a>,
     asked: AskedAll<'a>,
-    scene: Scene,
+    /// What a certificate is about, if one is wanted.
+    scene: Option<Scene>,
     /// Whether what earlier runs have proven is used.
     recalls: bool,
 }
@@ -119,6 +118,11 @@ impl<'a> Proof<'a> {
         LIFTS * self.asked.deepest(obstacle)
     }
 
+    /// Whether proofs are recorded for a checker.
+    fn is_recorded(&self) -> bool {
+        self.scene.is_some()
+    }
+
     /// An answer to the question that asks a statement of one of its obstacles.
     fn claim(
         &self,
@@ -130,9 +134,11 @@ impl<'a> Proof<'a> {
             (question.about == asked.about && question.limit == asked.limit)
                 && question.solid == asked.obstacles[obstacle]
         };
-        let number = self.scene.questions.iter().position(is_asked);
-        let claim = number.and_then(|number| Some((number, claim(&self.scene, &self.scene.questions[number])?)));
-        claim.into_iter().collect()
+        let answer = |scene: &Scene| {
+            let number = scene.questions.iter().position(is_asked)?;
+            Some((number, claim(scene, &scene.questions[number])?))
+        };
+        self.scene.as_ref().and_then(answer).into_iter().collect()
     }
 }
 
@@ -163,7 +169,7 @@ fn proven(
     let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
     let proof = Proof {
         session,
-        scene: asked.scene(),
+        scene: session.request.wants(Output::Certificate).then(|| asked.scene()),
         asked,
         recalls,
     };
@@ -181,7 +187,7 @@ fn proven(
     };
     let obstacles = proof.asked.obstacles.iter().enumerate();
     let solids = || obstacles.map(|(number, own)| solid_of(number, own)).collect();
-    let (solids, digest): (Vec<_>, String) = rayon::join(solids, || proof.scene.digest());
+    let (solids, digest): (Vec<_>, Option<String>) = rayon::join(solids, || proof.scene.as_ref().map(Scene::digest));
     let mut all = Vec::new();
     for asked in &proof.asked.statements {
         let own = asked.obstacles.iter().map(|number| &solids[*number]);
@@ -197,7 +203,8 @@ fn proven(
     all.extend(process::beside_stock(&proof, texts)?);
     all.extend(machine::apart(&proof, texts)?);
     let (mut statements, mut findings) = (Vec::new(), Vec::new());
-    let mut claims: Vec<Option<Claim>> = proof.scene.questions.iter().map(|_| None).collect();
+    let questions = proof.scene.iter().flat_map(|scene| &scene.questions);
+    let mut claims: Vec<Option<Claim>> = questions.map(|_| None).collect();
     for Proven {
         statement,
         findings: own,
@@ -217,10 +224,8 @@ fn proven(
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
     }
-    let certified = claims
-        .iter()
-        .any(Option::is_some)
-        .then_some(Certified { scene: digest, claims });
+    let digest = digest.filter(|_| claims.iter().any(Option::is_some));
+    let certified = digest.map(|scene| Certified { scene, claims });
     let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
@@ -250,7 +255,7 @@ fn gouges(
         solid,
         &own,
         &proof.asked.limits(asked),
-        RECORDED,
+        proof.is_recorded(),
         proof.session.monitor,
     );
     let found = found.ok_or(JobError::Cancelled)?;
