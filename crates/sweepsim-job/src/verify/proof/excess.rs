@@ -41,7 +41,7 @@ pub(super) fn excess(
         (solid, &job.stock),
         along,
         &wanted,
-        proof.is_recorded(),
+        proof.scene.is_some(),
         session.monitor,
     );
     let left = left.map_err(|error| session.failure(format!("stock: {error}")))?;

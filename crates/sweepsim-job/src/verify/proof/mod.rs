@@ -19,7 +19,6 @@ use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
 use crate::base::cache::{Digest, Key, RunCache};
-use crate::request::Output;
 use crate::session::Session;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
 use sweepsim_formats::{
@@ -55,7 +54,7 @@ type All = (Vec<Statement>, Vec<ReportedFinding>, Option<Certified>);
 struct Proof<'a> {
     session: Session<'a>,
     asked: AskedAll<'a>,
-    /// What a certificate is about, if one is wanted.
+    /// What a certificate is about, if one is wanted: only then, proofs are recorded.
     scene: Option<Scene>,
     /// Whether what earlier runs have proven is used.
     recalls: bool,
@@ -118,11 +117,6 @@ impl<'a> Proof<'a> {
         LIFTS * self.asked.deepest(obstacle)
     }
 
-    /// Whether proofs are recorded for a checker.
-    fn is_recorded(&self) -> bool {
-        self.scene.is_some()
-    }
-
     /// An answer to the question that asks a statement of one of its obstacles.
     fn claim(
         &self,
@@ -169,7 +163,7 @@ fn proven(
     let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
     let proof = Proof {
         session,
-        scene: session.request.wants(Output::Certificate).then(|| asked.scene()),
+        scene: session.request.wants_certificate().then(|| asked.scene()),
         asked,
         recalls,
     };
@@ -255,7 +249,7 @@ fn gouges(
         solid,
         &own,
         &proof.asked.limits(asked),
-        proof.is_recorded(),
+        proof.scene.is_some(),
         proof.session.monitor,
     );
     let found = found.ok_or(JobError::Cancelled)?;
