@@ -30,8 +30,10 @@ use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
 
-/// Depths that differ by no more, in parts of half a cell, are about the same.
-const ABOUT: f64 = 1e-6;
+/// Each piece of the surface is below the first, or the last, of those planes that have to be raised least for it, or
+/// by no more than this part of half a cell than that. The prover has the first choice, but other pieces: where it
+/// takes one plane for them, the other may be as good here.
+const CHOICES: [(f64, bool); 3] = [(1e-6, false), (1e-3, false), (1e-3, true)];
 
 /// When.
 pub(crate) enum During<'a> {
@@ -148,20 +150,35 @@ impl Near<'_> {
         (value + off <= self.farthest()).then_some(value + off)
     }
 
-    /// Lifted above several planes.
+    /// Lifted above several planes: as little as is wanted, or else by the best choice.
     fn lifted_above(&self, normals: &[V3]) -> Option<f64> {
+        let mut best: Option<f64> = None;
+        for choice in CHOICES {
+            let value = self.lifted_by_choice(normals, choice);
+            best = value.into_iter().chain(best).reduce(f64::min);
+            if best.is_some_and(|value| value <= self.most) {
+                break;
+            }
+        }
+        best
+    }
+
+    fn lifted_by_choice(&self, normals: &[V3], (about, last): (f64, bool)) -> Option<f64> {
         let reach: Vec<f64> = normals
             .iter()
             .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
             .collect();
-        // Each piece is below the first of those planes that have to be raised about least for it. Any choice is right;
-        // this one does not depend on rounding.
+        // Any choice is right.
         let mut tops = vec![f64::NEG_INFINITY; normals.len()];
         for own in self.cell.tops_up(normals)? {
             let depths = own.iter().zip(&reach).map(|(top, reach)| top + reach);
-            let about = depths.clone().fold(f64::INFINITY, f64::min) + ABOUT * self.cell.half;
-            let first = { depths }.position(|depth| depth <= about)?;
-            tops[first] = tops[first].max(own[first]);
+            let most = depths.clone().fold(f64::INFINITY, f64::min) + about * self.cell.half;
+            let (mut depths, is_least) = (depths, |depth| depth <= most);
+            let chosen = match last {
+                true => depths.rposition(is_least),
+                false => depths.position(is_least),
+            }?;
+            tops[chosen] = tops[chosen].max(own[chosen]);
         }
         let half = self.cell.half;
         let used: Vec<usize> = (0..normals.len()).filter(|i| tops[*i] > f64::NEG_INFINITY).collect();

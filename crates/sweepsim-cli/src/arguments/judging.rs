@@ -53,7 +53,7 @@ impl JudgeOptions {
         let mut judging = job::Judging::default();
         (judging.first, judging.clearance) = (self.first, self.clearance);
         (judging.sure, judging.moves) = (self.sure, self.moves);
-        judging.proof = !self.no_proof;
+        (judging.proof, judging.certificate) = (!self.no_proof, self.certificate.is_some());
         judging.offset_range = self.offset_range.unwrap_or_default();
         judging.place = self.place;
         judging.length_range = self.length_range.unwrap_or_default();

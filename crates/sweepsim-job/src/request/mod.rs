@@ -176,8 +176,8 @@ impl Request {
         Self { limits, ..self }
     }
 
-    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots cost time: without a report, they are
-    /// not computed.
+    /// What will be written; without this, [`Output::DEFAULT`]. The page's plots and what a certificate holds cost
+    /// time: without a report or a certificate, they are not computed. See also [`Judging::certificate`].
     #[must_use]
     pub fn outputs(self, outputs: impl IntoIterator<Item = Output>) -> Self {
         let outputs = outputs.into_iter().collect();
@@ -289,6 +289,11 @@ impl Request {
 
     pub(crate) fn wants(&self, output: Output) -> bool {
         self.wanted().contains(&output)
+    }
+
+    /// Whether what is proven is recorded for a certificate.
+    pub(crate) fn wants_certificate(&self) -> bool {
+        self.judging.certificate || self.wants(Output::Certificate)
     }
 
     /// An output that needs dexels along x, y and z: its file, and what asks for it.

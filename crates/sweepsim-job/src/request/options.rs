@@ -139,6 +139,9 @@ pub struct Judging {
     pub moves: bool,
     /// Whether to prove what can be proven between the lines of the dexels.
     pub proof: bool,
+    /// Whether a certificate of that can be had, even if [`Output::Certificate`](crate::Output::Certificate) is not
+    /// among the outputs.
+    pub certificate: bool,
     /// How far the part may be from its place on the machine along x, y and z, one way or the other, in millimetres.
     pub offset_range: [f64; 3],
     /// How much longer or shorter tools may be than the machine takes them, in millimetres.
@@ -155,6 +158,7 @@ impl Default for Judging {
             sure: false,
             moves: false,
             proof: true,
+            certificate: false,
             offset_range: [0.0; 3],
             length_range: 0.0,
             place: false,

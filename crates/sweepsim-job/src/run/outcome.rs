@@ -164,7 +164,7 @@ impl Outcome {
     }
 
     /// What was proven, as the text of `certificate.json`, for [`check`](crate::check). `None` if nothing was, or the
-    /// request has no notation.
+    /// request wants none or has no notation.
     ///
     /// # Errors
     /// [`JobError`]: a file of the request cannot be read any more.

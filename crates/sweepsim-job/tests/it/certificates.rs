@@ -1,10 +1,11 @@
 //! A small certificate of all statements, and whatever may be done to it.
 
 use crate::walls::{PROGRAM, slotted};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 use sweepsim_check::{Certificate, digest_of};
-use sweepsim_job::{Measure, Request, check};
+use sweepsim_job::{Measure, Output, Request, check};
 use tempfile::TempDir;
 
 const JOB: &str = r#"Job(
@@ -19,8 +20,8 @@ const JOB: &str = r#"Job(
     limits: Limits(gouge: 0.02, excess: 0.02),
 )"#;
 
-/// A folder with a job, and the certificate of it there.
-fn certified() -> (TempDir, PathBuf, Vec<u8>) {
+/// A folder with a job.
+fn with_job(job: &str) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let target = slotted([15.0, 25.0], -4.0);
     let corner = |p: &[f64; 3]| format!("vertex {} {} {}\n", p[0], p[1], p[2]);
@@ -35,8 +36,14 @@ fn certified() -> (TempDir, PathBuf, Vec<u8>) {
     )
     .expect("written");
     fs::write(folder.path().join("slot.nc"), PROGRAM).expect("written");
-    let job = folder.path().join("job.ron");
-    fs::write(&job, JOB).expect("written");
+    let file = folder.path().join("job.ron");
+    fs::write(&file, job).expect("written");
+    (folder, file)
+}
+
+/// The same, with the certificate of the job there.
+fn certified() -> (TempDir, PathBuf, Vec<u8>) {
+    let (folder, job) = with_job(JOB);
     let outcome = Request::from_file(&job)
         .plan()
         .expect("a plan")
@@ -144,6 +151,39 @@ fn the_stock_is_enough() {
         .replace("(0, 4)", "(0, 3)")
         .replace("(5, 4)", "(5, 3)");
     assert_eq!(said(&deep), all(false));
+}
+
+/// What a certificate holds is only recorded where one is wanted.
+#[test]
+fn without_a_certificate_the_same_is_said() {
+    let mut states = BTreeSet::new();
+    for (from, to) in [
+        ("", ""),
+        ("max: (-5, 40, 5)", "max: (20, 40, 5)"),
+        ("gouge: 0.02, excess: 0.02", "gouge: 0.0001, excess: 0.00001"),
+        ("(12, 30)", "(12, 3)"),
+    ] {
+        let (_folder, file) = with_job(&JOB.replacen(from, to, 1));
+        let said = |outputs: &[Output]| {
+            let plan = Request::from_file(&file).outputs(outputs.iter().copied()).plan();
+            let outcome = plan.expect("a plan").run(&()).expect("a result");
+            let report = serde_json::to_value(outcome.report()).expect("plain data");
+            let is_certified = outcome.certificate().expect("a notation").is_some();
+            let all = ["statements", "findings", "verdict"].map(|name| report[name].clone());
+            (all, is_certified)
+        };
+        let (with, is_certified) = said(&[Output::Report, Output::Certificate]);
+        assert!(is_certified);
+        assert_eq!(said(&[Output::Report]), (with.clone(), false), "{to}");
+        states.extend(
+            with[0]
+                .as_array()
+                .expect("statements")
+                .iter()
+                .map(|own| own["state"].to_string()),
+        );
+    }
+    assert!(states.len() > 1, "{states:?}");
 }
 
 #[test]

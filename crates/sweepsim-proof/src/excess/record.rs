@@ -15,6 +15,7 @@
 use super::removed::Holder;
 use super::surface::{Halved, Patch};
 use crate::numbers::write_number;
+use rayon::prelude::*;
 use smallvec::SmallVec;
 
 /// The trees of some patches of the surface: the first, how many, and the bytes.
@@ -81,9 +82,26 @@ fn bytes_of(halved: Halved) -> SmallVec<[u8; 5]> {
     }
 }
 
-/// The patches of the surface in parts, the large ones halved; and how they make up the surface.
-pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch) -> bool) -> (Vec<Patch>, Vec<Step>) {
-    let (mut parts, mut steps) = (Vec::new(), Vec::with_capacity(2 * surface.len()));
+/// The patches of the surface in parts, those longer than some length halved; and how they make up the surface.
+pub(super) fn parts(surface: &[SmallVec<[Patch; 1]>], longest: f64) -> (Vec<Patch>, Vec<Step>) {
+    let (mut parts, mut steps) = (Vec::with_capacity(surface.len()), Vec::with_capacity(2 * surface.len()));
+    let some: Vec<_> = surface
+        .par_chunks(TOGETHER)
+        .map(|some| parts_of(some, longest))
+        .collect();
+    for (own, of_own) in some {
+        let before = parts.len();
+        steps.extend(of_own.into_iter().map(|step| match step {
+            Step::Part(part) => Step::Part(before + part),
+            other => other,
+        }));
+        parts.extend(own);
+    }
+    (parts, steps)
+}
+
+fn parts_of(surface: &[SmallVec<[Patch; 1]>], longest: f64) -> (Vec<Patch>, Vec<Step>) {
+    let (mut parts, mut steps) = (Vec::with_capacity(surface.len()), Vec::with_capacity(2 * surface.len()));
     for own in surface {
         steps.push(Step::Begin);
         match own.len() {
@@ -91,10 +109,11 @@ pub(super) fn parts(surface: Vec<SmallVec<[Patch; 1]>>, is_large: impl Fn(&Patch
             1 => {}
             _ => steps.push(Step::Byte(16)),
         }
-        let mut open: Vec<Patch> = own.into_iter().rev().collect();
+        let mut open: Vec<Patch> = own.iter().rev().cloned().collect();
         while let Some(patch) = open.pop() {
-            let halves = patch.halves(0.0, f64::MIN_POSITIVE, None);
-            if let Some((halved, [first, second])) = halves.filter(|_| is_large(&patch)) {
+            let is_long = patch.length() > longest;
+            let halves = is_long.then(|| patch.halves(0.0, f64::MIN_POSITIVE, None)).flatten();
+            if let Some((halved, [first, second])) = halves {
                 steps.push(Step::Halved(halved));
                 open.extend([second, first]);
             } else {

@@ -112,8 +112,7 @@ pub fn highest_from(
     let patches = || {
         let surface = Patch::around(&target.triangles);
         let total: f64 = surface.iter().flatten().map(|patch| patch.length().powi(2)).sum();
-        let largest = (total / PARTS).sqrt();
-        parts(surface, |patch| patch.length() > largest)
+        parts(&surface, (total / PARTS).sqrt())
     };
     let (motions, (patches, steps)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, patches);
     let courses = || cutters.iter().zip(&motions);

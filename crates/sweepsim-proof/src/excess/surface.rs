@@ -7,8 +7,10 @@
 
 use crate::solid::Triangle;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 type Vectors = SmallVec<[Vector3<f64>; 3]>;
 /// Triangles, each with a corner.
@@ -68,9 +70,7 @@ impl Patch {
                 })
             }));
         }
-        let mut all: Vec<SmallVec<[Self; 1]>> = Vec::with_capacity(3 * triangles.len());
         let mut around: Vec<Vectors> = vec![Vectors::new(); places.len()];
-        let mut outwards = vec![false; places.len()];
         // The triangles on the left of each edge, and their corners off the edge.
         let mut sides: FxHashMap<(usize, usize), Sides> = FxHashMap::default();
         for (number, face) in faces.iter().enumerate() {
@@ -80,13 +80,17 @@ impl Patch {
                 around[face[k]].push(triangles[number].normal);
             }
         }
-        for (number, (triangle, face)) in triangles.iter().zip(&faces).enumerate() {
-            all.push(SmallVec::from([Self {
+        let outwards: Vec<AtomicBool> = places.iter().map(|_| AtomicBool::new(false)).collect();
+        let of_triangle = |number: usize| {
+            let (triangle, face) = (&triangles[number], &faces[number]);
+            let mut own: SmallVec<[SmallVec<[Self; 1]>; 4]> = SmallVec::new();
+            own.push(SmallVec::from([Self {
                 corners: triangle.corners.into_iter().collect(),
                 normals: [triangle.normal].into_iter().collect(),
             }]));
             for k in 0..3 {
                 let [a, b] = [face[k], face[(k + 1) % 3]];
+                let turns_out = || [a, b].map(|place| outwards[place].store(true, Ordering::Relaxed));
                 let edge = |normal: &Vector3<f64>| Self {
                     corners: [places[a], places[b]].into_iter().collect(),
                     normals: [triangle.normal, *normal].into_iter().collect(),
@@ -94,30 +98,34 @@ impl Patch {
                 let is_other = |normal: &Vector3<f64>| (normal - triangle.normal).norm() > SAME;
                 let Some(others) = sides.get(&(b, a)) else {
                     // Beyond a triangle without area, which was left out, is one that has a corner in common.
-                    (outwards[a], outwards[b]) = (true, true);
+                    turns_out();
                     let normals = around[a].iter().chain(&around[b]).filter(|normal| is_other(normal));
-                    all.extend(normals.map(|normal| SmallVec::from([edge(normal)])));
+                    own.extend(normals.map(|normal| SmallVec::from([edge(normal)])));
                     continue;
                 };
                 for (other, off) in others.iter().filter(|(other, _)| *other > number) {
                     let (way, off) = (places[b] - places[a], places[*off] - places[a]);
                     // The sine of the angle by which it turns inwards.
                     let turn = triangle.normal.dot(&off) * way.norm() / way.cross(&off).norm();
-                    let turns_out = turn < -SAME;
-                    outwards[a] |= turns_out;
-                    outwards[b] |= turns_out;
-                    let own = turns_out.then(|| edge(&triangles[*other].normal));
-                    all.push(own.into_iter().collect());
+                    own.push(if turn < -SAME {
+                        turns_out();
+                        SmallVec::from([edge(&triangles[*other].normal)])
+                    } else {
+                        SmallVec::new()
+                    });
                 }
             }
-        }
-        for ((place, normals), outwards) in places.iter().zip(&around).zip(outwards) {
-            all.push(if outwards {
+            own
+        };
+        let mut all: Vec<_> = (0..faces.len()).into_par_iter().flat_map_iter(of_triangle).collect();
+        let corners = places.par_iter().zip(&around).zip(&outwards);
+        all.par_extend(corners.map(|((place, normals), outwards)| {
+            if outwards.load(Ordering::Relaxed) {
                 Self::at_corner(place, normals)
             } else {
                 SmallVec::new()
-            });
-        }
+            }
+        }));
         all
     }
 

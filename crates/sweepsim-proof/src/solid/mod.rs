@@ -51,8 +51,9 @@ impl Target {
     /// # Errors
     /// The triangles do not enclose a solid.
     pub fn new(soup: &TriangleSoup, lift: f64) -> Result<Self, MeshError> {
-        soup.check_closed()?;
-        let distance = DistanceTo::new(soup)?;
+        let (closed, distance) = rayon::join(|| soup.check_closed(), || DistanceTo::new(soup));
+        closed?;
+        let distance = distance?;
         let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         let mut triangles = Vec::with_capacity(soup.triangles.len());
         for (number, corners) in (0..).zip(&soup.triangles) {

@@ -313,6 +313,23 @@ fn rounding_does_not_decide_below_which_plane_a_triangle_is() {
     assert!(cuts);
 }
 
+/// The checker cuts the surface into other pieces, of which one is below another plane of a lift than the prover's.
+#[test]
+fn a_lollipop_on_a_level_arc_is_certified() {
+    let scene = SceneOf {
+        target: 2,
+        size: 0.815_048_642_884_916_6,
+        tool: 3,
+        motion: 3,
+        tips: [
+            [6.056_074_123_343_195, 3.261_284_163_310_776, 2.365_993_536_942_846_6],
+            [-5.774_508_592_418_689, 4.764_507_230_620_748, 0.209_081_957_807_572_33],
+        ],
+        axes: [[0.0, 0.0, 1.0]; 2],
+    };
+    check(&scene, (16, 4)).expect("it is certified");
+}
+
 #[test]
 fn random_scenes_are_enclosed() {
     run(40, (16, 4));

@@ -1,6 +1,9 @@
 //! Typed arrays as bytes.
 
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use serde::Serialize;
+use std::io::Write;
 
 /// The type of an array's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -31,7 +34,7 @@ pub(crate) struct Arrays {
 }
 
 /// The level at which more effort gains little.
-const LEVEL: u8 = 6;
+const LEVEL: Compression = Compression::new(6);
 
 /// Each number less the one before it, modulo 2 to the number of its bits; then all low bytes, all second bytes, and so
 /// on.
@@ -51,7 +54,9 @@ fn planes<const N: usize>(numbers: impl ExactSizeIterator<Item = u32>) -> Vec<u8
 
 impl Arrays {
     fn push(&mut self, name: &'static str, kind: Kind, count: usize, plain: &[u8]) {
-        let packed = miniz_oxide::deflate::compress_to_vec_zlib(plain, LEVEL);
+        let mut encoder = ZlibEncoder::new(Vec::with_capacity(plain.len() / 2), LEVEL);
+        let packed = encoder.write_all(plain).and_then(|()| encoder.finish());
+        let packed = packed.expect("memory can be written to");
         let bytes = packed.len();
         self.entries.push(Entry {
             name,

@@ -130,3 +130,81 @@ fn flat_face(loops: Vec<Vec<Use>>, placed: &Placed) -> Option<Face> {
         spline: None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// Closed edges from each corner to the next.
+    fn polygon(corners: &[Vector3<f64>]) -> (Vec<Use>, Placed) {
+        let count = corners.len();
+        let edge = |k: usize| Edge {
+            vertices: [k as u32, ((k + 1) % count) as u32],
+            ends: [corners[k], corners[(k + 1) % count]],
+            curve: Curve::Line,
+        };
+        let placed = Placed {
+            edges: (0..count).map(|k| Some(edge(k))).collect(),
+            vertices: corners.to_vec(),
+            failed: Vec::new(),
+        };
+        ((0..count as u32).map(|k| (k, true)).collect(), placed)
+    }
+
+    /// Triangles that cover the polygon once: none is turned over, and together they are as large as it is. Their new
+    /// sides are passed both ways.
+    #[test]
+    fn polygons_with_any_corners_are_cut() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut hollow = 0;
+        for number in 0..400 {
+            let count = 4 + number % 6;
+            let frame = nalgebra::Rotation3::from_euler_angles(6.0 * random(), 3.0 * random(), 6.0 * random());
+            // Seen from the middle, each lies behind the one before it; some turn inwards, and none is in the plane.
+            let corners: Vec<Vector3<f64>> = (0..count)
+                .map(|k| {
+                    let angle = (k as f64 + 0.6 * random()) * std::f64::consts::TAU / count as f64;
+                    let away = 0.2 + random();
+                    frame * Vector3::new(away * angle.cos(), away * angle.sin(), 0.02 * random())
+                })
+                .collect();
+            let normal = frame * Vector3::z();
+            let turn = |[a, b, c]: [&Vector3<f64>; 3]| (b - a).cross(&(c - b)).dot(&normal);
+            let is_hollow = |k: usize| turn([0, 1, 2].map(|step| &corners[(k + step) % count])) < 0.0;
+            hollow += usize::from((0..count).any(is_hollow));
+            let (all, mut placed) = polygon(&corners);
+            let parts = cut(&all, normal, &mut placed).expect("triangles");
+
+            assert_eq!((parts.len(), placed.edges.len()), (count - 2, 2 * count - 3));
+            let mut passed: BTreeMap<u32, Vec<bool>> = BTreeMap::new();
+            let mut area = 0.0;
+            for part in &parts {
+                let own: Vec<Vector3<f64>> = part.iter().filter_map(|used| start(used, &placed)).collect();
+                let ends = part.iter().map(|(edge, forward)| {
+                    let edge = placed.edges[*edge as usize].as_ref().expect("an edge");
+                    edge.ends[usize::from(*forward)]
+                });
+                assert!(ends.eq((0..3).map(|k| own[(k + 1) % 3])), "sides follow each other");
+                let twice = doubled_area(&own).dot(&normal);
+                assert!(own.len() == 3 && twice > 0.0, "{number}: {twice}");
+                area += twice;
+                for (edge, forward) in part {
+                    passed.entry(*edge).or_default().push(*forward);
+                }
+            }
+            let whole = doubled_area(&corners).dot(&normal);
+            assert!((area - whole).abs() <= 1e-12 * whole, "{number}: {area} of {whole}");
+            for (edge, mut ways) in passed {
+                ways.sort_unstable();
+                let is_new = edge as usize >= count;
+                assert_eq!(ways, if is_new { vec![false, true] } else { vec![true] });
+            }
+        }
+        assert!((100..400).contains(&hollow), "{hollow}");
+    }
+}

@@ -1,6 +1,6 @@
 //! What is proven of shanks and holders, and of all beside fixtures.
 
-use super::{LISTED, Proof, Proven, RECORDED, deep, described, finding, place};
+use super::{LISTED, Proof, Proven, deep, described, finding, place};
 use crate::base::JobError;
 use crate::verify::asked::Asked;
 use crate::verify::texts::{ProgramTexts, name_of};
@@ -36,7 +36,7 @@ fn kept_away(
     (asked, kind): (&Asked, &str),
     solids: &[Obstacle],
 ) -> Result<Proven, JobError> {
-    let (job, limit) = (proof.session.job, -asked.limit);
+    let (job, limit, recorded) = (proof.session.job, -asked.limit, proof.scene.is_some());
     let mut statement = Statement::new(asked.about, limit);
     statement.measure = Measure::Distance;
     let (wanted, bodies) = (proof.asked.limits(asked), proof.asked.solids(asked));
@@ -47,7 +47,7 @@ fn kept_away(
                 let movers = proof.asked.along(&bodies, *setup);
                 let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
                 let known = proof.known(Some(asked.obstacles[number]));
-                let found = closest_from(&known, solid, &own, &wanted, RECORDED, proof.session.monitor);
+                let found = closest_from(&known, solid, &own, &wanted, recorded, proof.session.monitor);
                 let mut found = found.ok_or(JobError::Cancelled)?;
                 claims.extend(proof.claim(asked, number, |scene, question| {
                     distance_claim(scene, question, solid, &movers, &found)
@@ -108,6 +108,7 @@ fn kept_out(
     solids: &[Obstacle],
 ) -> Result<Proven, JobError> {
     let (job, about, limit) = (proof.session.job, asked.about, asked.limit);
+    let recorded = proof.scene.is_some();
     let mut statement = Statement::new(about, limit);
     let (wanted, all_solids) = (proof.asked.limits(asked), proof.asked.solids(asked));
     let (mut all, mut claims) = (Enclosed::default(), Vec::new());
@@ -117,7 +118,7 @@ fn kept_out(
                 let movers = proof.asked.along(&all_solids, *setup);
                 let own: Vec<Cutter> = movers.iter().map(|(_, own)| *own).collect();
                 let known = proof.known(Some(asked.obstacles[number]));
-                let found = deepest_from(&known, solid, &own, &wanted, RECORDED, proof.session.monitor);
+                let found = deepest_from(&known, solid, &own, &wanted, recorded, proof.session.monitor);
                 let mut found = found.ok_or(JobError::Cancelled)?;
                 claims.extend(proof.claim(asked, number, |scene, question| {
                     depth_claim(scene, question, solid, &movers, &found)

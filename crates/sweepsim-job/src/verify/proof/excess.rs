@@ -1,6 +1,6 @@
 //! What is proven of what is left standing.
 
-use super::{LISTED, Proof, Proven, RECORDED};
+use super::{LISTED, Proof, Proven};
 use crate::base::JobError;
 use crate::verify::asked::{Asked, limits};
 use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
@@ -36,7 +36,14 @@ pub(super) fn excess(
     }
     let known = proof.known(Some(asked.obstacles[0]));
     let along = &along[..];
-    let left = highest_from(&known, (solid, &job.stock), along, &wanted, RECORDED, session.monitor);
+    let left = highest_from(
+        &known,
+        (solid, &job.stock),
+        along,
+        &wanted,
+        proof.scene.is_some(),
+        session.monitor,
+    );
     let left = left.map_err(|error| session.failure(format!("stock: {error}")))?;
     let left = left.ok_or(JobError::Cancelled)?;
     let claims = proof.claim(asked, 0, |scene, question| {

@@ -10,7 +10,6 @@ use crate::session::Session;
 use crate::verify::asked::AskedAll;
 use crate::verify::asked::material::is_guessed;
 use crate::verify::proof::pairs::with_remains;
-use sweepsim_check::Scene;
 use sweepsim_formats::{Job, OnMachine};
 use sweepsim_machine::{Course, Outcome};
 use sweepsim_nc::AxesCourse;
@@ -44,7 +43,7 @@ pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, O
     session.phase("place");
     let proof = Proof {
         session,
-        scene: Scene::default(),
+        scene: None,
         asked: AskedAll::new(session.job, session.request, is_guessed(session.plan)),
         recalls: false,
     };

@@ -32,9 +32,6 @@ const LISTED: usize = 100;
 /// What goes too deep may have to be lifted so many limits.
 const LIFTS: f64 = 2.5;
 
-/// Every proof is kept for a checker.
-const RECORDED: bool = true;
-
 /// A statement with the moves that were seen to break it.
 struct Proven {
     statement: Statement,
@@ -57,7 +54,8 @@ type All = (Vec<Statement>, Vec<ReportedFinding>, Option<Certified>);
 struct Proof<'a> {
     session: Session<'a>,
     asked: AskedAll<'a>,
-    scene: Scene,
+    /// What a certificate is about, if one is wanted: only then, proofs are recorded.
+    scene: Option<Scene>,
     /// Whether what earlier runs have proven is used.
     recalls: bool,
 }
@@ -130,9 +128,11 @@ impl<'a> Proof<'a> {
             (question.about == asked.about && question.limit == asked.limit)
                 && question.solid == asked.obstacles[obstacle]
         };
-        let number = self.scene.questions.iter().position(is_asked);
-        let claim = number.and_then(|number| Some((number, claim(&self.scene, &self.scene.questions[number])?)));
-        claim.into_iter().collect()
+        let answer = |scene: &Scene| {
+            let number = scene.questions.iter().position(is_asked)?;
+            Some((number, claim(scene, &scene.questions[number])?))
+        };
+        self.scene.as_ref().and_then(answer).into_iter().collect()
     }
 }
 
@@ -163,7 +163,7 @@ fn proven(
     let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
     let proof = Proof {
         session,
-        scene: asked.scene(),
+        scene: session.request.wants_certificate().then(|| asked.scene()),
         asked,
         recalls,
     };
@@ -181,7 +181,7 @@ fn proven(
     };
     let obstacles = proof.asked.obstacles.iter().enumerate();
     let solids = || obstacles.map(|(number, own)| solid_of(number, own)).collect();
-    let (solids, digest): (Vec<_>, String) = rayon::join(solids, || proof.scene.digest());
+    let (solids, digest): (Vec<_>, Option<String>) = rayon::join(solids, || proof.scene.as_ref().map(Scene::digest));
     let mut all = Vec::new();
     for asked in &proof.asked.statements {
         let own = asked.obstacles.iter().map(|number| &solids[*number]);
@@ -197,7 +197,8 @@ fn proven(
     all.extend(process::beside_stock(&proof, texts)?);
     all.extend(machine::apart(&proof, texts)?);
     let (mut statements, mut findings) = (Vec::new(), Vec::new());
-    let mut claims: Vec<Option<Claim>> = proof.scene.questions.iter().map(|_| None).collect();
+    let questions = proof.scene.iter().flat_map(|scene| &scene.questions);
+    let mut claims: Vec<Option<Claim>> = questions.map(|_| None).collect();
     for Proven {
         statement,
         findings: own,
@@ -217,10 +218,8 @@ fn proven(
         findings.extend(own.into_iter().filter(is_new));
         statements.push(with_lines(statement, seen));
     }
-    let certified = claims
-        .iter()
-        .any(Option::is_some)
-        .then_some(Certified { scene: digest, claims });
+    let digest = digest.filter(|_| claims.iter().any(Option::is_some));
+    let certified = digest.map(|scene| Certified { scene, claims });
     let is_crowded = |(_, solid, _): &(usize, Result<Target, String>, _)| solid.as_ref().is_ok_and(Target::is_crowded);
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
@@ -250,7 +249,7 @@ fn gouges(
         solid,
         &own,
         &proof.asked.limits(asked),
-        RECORDED,
+        proof.scene.is_some(),
         proof.session.monitor,
     );
     let found = found.ok_or(JobError::Cancelled)?;

@@ -59,15 +59,18 @@ fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Move
 
 /// An answer to the question about some movers, if it is asked.
 fn claims(proof: &Proof, solids: &Solids, movers: Movers, found: &Touched) -> Vec<(usize, Claim)> {
+    let Some(scene) = &proof.scene else {
+        return Vec::new();
+    };
     let [bodies, cutters] = [&solids.bodies, &solids.cutters].map(|solids| proof.asked.along(solids, None));
     let own = match movers {
         Movers::Bodies => &bodies,
         Movers::Rapids => &cutters,
     };
-    let questions = proof.scene.questions.iter().enumerate();
+    let questions = scene.questions.iter().enumerate();
     let asked = questions.filter(|(_, question)| question.about == about(movers));
     let claim = |(number, question): (usize, &Question)| {
-        let claim = material_claim(&proof.scene, question, [own, &cutters], question.limit, found)?;
+        let claim = material_claim(scene, question, [own, &cutters], question.limit, found)?;
         Some((number, claim))
     };
     asked.filter_map(claim).collect()
