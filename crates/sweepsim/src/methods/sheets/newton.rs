@@ -47,3 +47,30 @@ pub(crate) fn newton<T, R>(
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweepsim_props::*;
+
+    proptest! {
+        /// The only zero is found wherever the search starts, by right slopes and where steps lead nowhere.
+        #[test]
+        fn the_only_zero(root in 0.001..0.999_f64, start in -1.0..2.0_f64, bend in 0.0..50.0_f64, rises in any::<bool>()) {
+            let sign = if rises { 1.0 } else { -1.0 };
+            let value = |x: f64| sign * ((x - root) + bend * (x - root).powi(3));
+            let slope = |x: f64| sign * (1.0 + 3.0 * bend * (x - root).powi(2));
+            for step in [|value: f64, slope: f64| value / slope, |_, _| f64::NAN, |_, _| 0.0, |_, slope| 2.0 * slope] {
+                for halves in [middle, halfway] {
+                    let at = |x: f64| (value(x), step(value(x), slope(x)), slope(x));
+                    let done = |x: f64, step: f64, slope: &f64, [a, b]: [f64; 2]| {
+                        let near = (step * slope).abs() < 1e-13 && step != 0.0;
+                        (near || b - a < 1e-12).then_some(x)
+                    };
+                    let found = newton([0.0, 1.0], (rises, start), halves, at, done);
+                    prop_assert!(found.is_some_and(|x| (x - root).abs() < 1e-11), "{found:?}");
+                }
+            }
+        }
+    }
+}
