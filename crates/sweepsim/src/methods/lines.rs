@@ -10,7 +10,7 @@ use crate::envelope::{
 use crate::methods::charts::Charts;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
-use crate::methods::placement::sides;
+use crate::methods::search::placement::sides;
 use crate::methods::workspace::Solvers;
 use crate::time::over::{DyadicInterval, Over};
 use crate::time::path_parts::PathPart;
@@ -300,7 +300,7 @@ mod tests {
                 let [a, b] = plane(motion.position(), &at);
                 prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
                 let [before, after] = [
-                    crate::methods::placement::twist(&segment, SegmentEnd::Start, &segment.start()),
+                    crate::methods::search::placement::twist(&segment, SegmentEnd::Start, &segment.start()),
                     JointSide::Beyond(true),
                 ];
                 let (turn, own_tip) = (segment.start(), nalgebra::Vector3::from(segment.tips()[0]));

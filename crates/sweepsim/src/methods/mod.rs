@@ -8,7 +8,6 @@ pub(crate) mod harvest;
 pub(crate) mod lattice;
 pub(crate) mod lines;
 pub(crate) mod method;
-mod placement;
 pub(crate) mod planes;
 pub(crate) mod search;
 pub(crate) mod sheets;

@@ -1,6 +1,8 @@
 //! The equations of a stretch of path, and the meaning of their solutions: the crossings of dexel lines with the envelope, the edges, the kinks and the
 //! two caps.
 
+pub(super) mod placement;
+
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::cutter::outline::Outline;

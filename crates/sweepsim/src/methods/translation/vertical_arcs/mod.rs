@@ -10,8 +10,8 @@
 //! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never;
 //! - a tool whose axis is perpendicular to the arc's plane has a circle in each section, as a ball has, but for the
 //!   normal;
-//! - the section of a cone or a torus of an upright tool sweeps the curves that are parallel to it at the distance `r`:
-//!   one equation in one unknown for each line.
+//! - the section of a cone or a torus, of a tool that is upright or lies in the arc's plane, sweeps the curves that are
+//!   parallel to it at the distance `r`: one equation in one unknown for each line.
 //!
 //! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along
 //! a line, but for a positive factor: it falls where `s > 0`.

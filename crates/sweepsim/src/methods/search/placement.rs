@@ -17,7 +17,7 @@ use sweepsim_motion::{Segment, SegmentEnd, turned_back};
 use sweepsim_solve::Preimage;
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
-pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> JointSide {
+pub(in crate::methods) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> JointSide {
     let [spin, travel] = segment.velocity(end).map(Vector3::from);
     JointSide::Moving(Twist {
         sizes: [spin, travel].map(|v| back_size(&[*turn], &v, segment.turns().len() > 1)),
@@ -27,7 +27,7 @@ pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> 
 }
 
 /// The motions before and after the placement at the start of a part, or at the end of the last part of a path.
-pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [JointSide; 2] {
+pub(in crate::methods) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [JointSide; 2] {
     let segment = &parts[at].segment;
     if end == SegmentEnd::Finish {
         return [
