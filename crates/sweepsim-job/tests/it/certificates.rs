@@ -157,10 +157,7 @@ fn the_stock_is_enough() {
 #[test]
 fn without_a_certificate_the_same_is_said() {
     let mut states = BTreeSet::new();
-    for (from, to) in [
-        ("max: (-5, 40, 5)", "max: (20, 40, 5)"),
-        ("(12, 30)", "(12, 3)"),
-    ] {
+    for (from, to) in [("max: (-5, 40, 5)", "max: (20, 40, 5)"), ("(12, 30)", "(12, 3)")] {
         let (_folder, file) = with_job(&JOB.replacen(from, to, 1));
         let said = |outputs: &[Output]| {
             let plan = Request::from_file(&file).outputs(outputs.iter().copied()).plan();
