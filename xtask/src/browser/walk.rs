@@ -10,15 +10,13 @@ use std::path::Path;
 pub type Walk = fn(&mut Browser, &Path, Option<&Path>) -> Result<String, String>;
 
 const DESKTOP: [u32; 2] = [1280, 800];
-/// Drawn in less time, where many pictures are.
-const SMALL: [u32; 2] = [800, 500];
 const PHONE: [u32; 2] = [390, 844];
 
 /// Name, size of the page, flags of the browser, and what to do.
 pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 9] {
     [
         ("mouse", DESKTOP, &[], mouse),
-        ("controls", SMALL, &[], controls::controls),
+        ("controls", DESKTOP, &[], controls::controls),
         ("keyboard", DESKTOP, &[], keyboard),
         ("phone", PHONE, &[], phone),
         ("walls", DESKTOP, &[], walls::walls),

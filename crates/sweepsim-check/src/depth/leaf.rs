@@ -30,9 +30,9 @@ use crate::motion::{Node, Placement, Run};
 use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
 
-/// Each piece of the surface is below the first, or the last, of those planes that have to be raised least for it, or
-/// by no more than this part of half a cell than that. The prover has the first choice, but other pieces: where it
-/// takes one plane for them, the other may be as good here.
+/// Each piece of the surface is below one of the planes: of those that have to be raised least for it, or by this part
+/// of half a cell more, the first or the last. The prover takes the first choice, but cuts other pieces: where it takes
+/// one plane for them, another may be as good here.
 const CHOICES: [(f64, bool); 3] = [(1e-6, false), (1e-3, false), (1e-3, true)];
 
 /// When.
