@@ -84,9 +84,7 @@ impl Process {
         let pool = self.pool()?;
         let progress = Progress::new(plan.job().moves(), self.quiet);
         let done = pool.install(|| {
-            let outcome = plan.run(&progress)?;
-            let wanted = outcome.plan().request().wanted();
-            let written = outcome.write_to(&mut outputs, wanted, &progress)?;
+            let (outcome, written) = plan.run_to(&mut outputs, &progress)?;
             if let Some(file) = certificate {
                 let none = "there is nothing to certify: nothing was decided, or a proof was too long";
                 let none = || JobError::Request {

@@ -6,18 +6,17 @@
 //! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
 //! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch, a ray tells the side.
 
-use super::parts::{self, TrianglePart};
-use super::{FaceSurfaces, MeshError, TriangleSoup};
+use super::tree::{TreeNode, grown};
+use super::{FaceSurfaces, Mesh, MeshError, TriangleSoup, parts};
 use crate::vector::{along, cross, dot, sub};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
+use std::sync::Arc;
 
-/// Triangles of a leaf of the tree.
-const LEAF: usize = 4;
 /// Squares of distances that differ by no more than this part are the same.
 const SAME: f64 = 1e-12;
 
-/// A triangle surface, prepared for distance queries.
+/// A triangle surface, prepared for distance queries. Clones share what was prepared.
 ///
 /// ```
 /// use sweepsim_dexel::{DistanceTo, TriangleSoup};
@@ -31,13 +30,18 @@ const SAME: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug)]
 pub struct DistanceTo {
-    pub(super) vertices: Vec<[f64; 3]>,
-    pub(super) faces: Vec<Face>,
-    /// The faces of the leaves, one leaf after another; a face is in several if it has been looked at in parts.
-    pub(super) order: Vec<u32>,
-    pub(super) nodes: Vec<TreeNode>,
+    pub(super) prepared: Arc<Prepared>,
     /// What the triangles approximate, if that is known.
     pub(super) surfaces: Option<FaceSurfaces>,
+}
+
+#[derive(Debug)]
+pub(super) struct Prepared {
+    pub vertices: Vec<[f64; 3]>,
+    pub faces: Vec<Face>,
+    /// The faces of the leaves, one leaf after another; a face is in several if it has been looked at in parts.
+    pub order: Vec<u32>,
+    pub nodes: Vec<TreeNode>,
 }
 
 /// The point of a surface nearest to a given point.
@@ -85,16 +89,6 @@ pub(super) struct Face {
     at_edges: [[f32; 3]; 3],
 }
 
-#[derive(Clone, Debug)]
-pub(super) struct TreeNode {
-    pub low: [f64; 3],
-    pub high: [f64; 3],
-    /// The places `first..first + count` in the order of faces; of an inner node the second child is at `first`, the
-    /// first right behind it.
-    pub first: u32,
-    pub count: u32,
-}
-
 /// Which part of a triangle is meant.
 #[derive(Clone, Copy)]
 pub enum NearestOn {
@@ -139,46 +133,39 @@ pub fn nearest_on(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> ([f64; 3], NearestOn
     (along(along(a, vb * scale, ab), vc * scale, ac), NearestOn::Inside)
 }
 
-impl TreeNode {
-    fn distance_squared(&self, p: [f64; 3]) -> f64 {
-        (0..3)
-            .map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2))
-            .sum()
-    }
-}
+/// At three corners, or three edges.
+type Pseudonormals = [[f32; 3]; 3];
 
-/// Builds the tree over some parts of faces, the first of which has the place `first` in the order of all.
-fn split(nodes: &mut Vec<TreeNode>, parts: &mut [TrianglePart], first: usize) {
-    let number = nodes.len();
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for part in &*parts {
+/// Those at the corners and at the edges of all faces.
+fn pseudonormals(mesh: &Mesh, faces: &[Face]) -> Vec<(Pseudonormals, Pseudonormals)> {
+    let mut around = vec![[0.0; 3]; mesh.vertices.len()];
+    // Only looked up, so its order does not matter. Of a closed surface, three edges for two faces.
+    let mut edges: FxHashMap<(u32, u32), [f64; 3]> = FxHashMap::default();
+    edges.reserve(faces.len() / 2 * 3);
+    let key = |a: u32, b: u32| (a.min(b), a.max(b));
+    for face in faces {
+        let p = face.corners.map(|v| mesh.vertices[v as usize]);
         for k in 0..3 {
-            (low[k], high[k]) = (low[k].min(part.low[k]), high[k].max(part.high[k]));
+            let (u, v) = (sub(p[(k + 1) % 3], p[k]), sub(p[(k + 2) % 3], p[k]));
+            let angle = dot(cross(u, v), cross(u, v)).sqrt().atan2(dot(u, v));
+            let sum = &mut around[face.corners[k] as usize];
+            *sum = along(*sum, angle, face.normal);
+            let sum = edges
+                .entry(key(face.corners[k], face.corners[(k + 1) % 3]))
+                .or_default();
+            *sum = along(*sum, 1.0, face.normal);
         }
     }
-    nodes.push(TreeNode {
-        low,
-        high,
-        first: first as u32,
-        count: parts.len() as u32,
-    });
-    if parts.len() <= LEAF {
-        return;
-    }
-    // Not of the boxes: what is long along an axis may all have one place there.
-    let extent = [0, 1, 2].map(|k| {
-        let places = parts.iter().map(|part| part.place[k]);
-        let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], c| [a.min(c), b.max(c)]);
-        ends[1] - ends[0]
-    });
-    let axis = (0..3).fold(0, |a, k| if extent[k] > extent[a] { k } else { a });
-    let middle = parts.len() / 2;
-    parts.select_nth_unstable_by(middle, |a, b| a.place[axis].total_cmp(&b.place[axis]));
-    let (lower, upper) = parts.split_at_mut(middle);
-    split(nodes, lower, first);
-    let second = nodes.len() as u32;
-    split(nodes, upper, first + middle);
-    (nodes[number].first, nodes[number].count) = (second, 0);
+    let of_face = |face: &Face| {
+        let corners = face.corners;
+        let at_corners = corners.map(|v| around[v as usize].map(|c| c as f32));
+        let at_edges = [0, 1, 2].map(|k| {
+            let sum = edges.get(&key(corners[k], corners[(k + 1) % 3]));
+            sum.copied().unwrap_or(face.normal).map(|c| c as f32)
+        });
+        (at_corners, at_edges)
+    };
+    faces.iter().map(of_face).collect()
 }
 
 impl DistanceTo {
@@ -209,35 +196,14 @@ impl DistanceTo {
                 })
             })
             .collect();
-        let mut around = vec![[0.0; 3]; mesh.vertices.len()];
-        // Only looked up, so its order does not matter.
-        let mut edges: FxHashMap<(u32, u32), [f64; 3]> = FxHashMap::default();
-        let key = |a: u32, b: u32| (a.min(b), a.max(b));
-        for face in &faces {
-            let p = face.corners.map(|v| mesh.vertices[v as usize]);
-            for k in 0..3 {
-                let (u, v) = (sub(p[(k + 1) % 3], p[k]), sub(p[(k + 2) % 3], p[k]));
-                let angle = dot(cross(u, v), cross(u, v)).sqrt().atan2(dot(u, v));
-                let sum = &mut around[face.corners[k] as usize];
-                *sum = along(*sum, angle, face.normal);
-                let sum = edges
-                    .entry(key(face.corners[k], face.corners[(k + 1) % 3]))
-                    .or_default();
-                *sum = along(*sum, 1.0, face.normal);
-            }
-        }
-        for face in &mut faces {
-            let corners = face.corners;
-            face.at_corners = corners.map(|v| around[v as usize].map(|c| c as f32));
-            face.at_edges = [0, 1, 2].map(|k| {
-                let sum = edges.get(&key(corners[k], corners[(k + 1) % 3]));
-                sum.copied().unwrap_or(face.normal).map(|c| c as f32)
-            });
-        }
-        let mut parts = parts::of(faces.iter().map(|f| f.corners.map(|v| mesh.vertices[v as usize])));
-        let mut nodes = Vec::new();
-        if !parts.is_empty() {
-            split(&mut nodes, &mut parts, 0);
+        let parts = || {
+            let mut parts = parts::of(faces.iter().map(|f| f.corners.map(|v| mesh.vertices[v as usize])));
+            let nodes = grown(&mut parts);
+            (parts, nodes)
+        };
+        let (sides, (parts, nodes)) = rayon::join(|| pseudonormals(&mesh, &faces), parts);
+        for (face, (at_corners, at_edges)) in faces.iter_mut().zip(sides) {
+            (face.at_corners, face.at_edges) = (at_corners, at_edges);
         }
         // In the order of the leaves, so that what is looked at together lies together.
         let mut numbers = vec![u32::MAX; faces.len()];
@@ -252,10 +218,12 @@ impl DistanceTo {
             order.push(*number);
         }
         Ok(Self {
-            vertices: mesh.vertices,
-            faces: sorted,
-            order,
-            nodes,
+            prepared: Arc::new(Prepared {
+                vertices: mesh.vertices,
+                faces: sorted,
+                order,
+                nodes,
+            }),
             surfaces: None,
         })
     }
@@ -278,7 +246,7 @@ impl DistanceTo {
         let (number, place, part) = self.closest(p, (reach, wanted), &mut as_near)?;
         let off = sub(p, place);
         let is_outside = |(number, part): (usize, NearestOn)| {
-            let face = &self.faces[number];
+            let face = &self.prepared.faces[number];
             let side = match part {
                 NearestOn::Inside => face.normal,
                 NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
@@ -295,8 +263,8 @@ impl DistanceTo {
         let near = Nearest {
             distance: if outside { away } else { -away },
             place,
-            normal: self.faces[number].normal,
-            triangle: self.faces[number].number as usize,
+            normal: self.prepared.faces[number].normal,
+            triangle: self.prepared.faces[number].number as usize,
         };
         Some(self.on_surface(p, near))
     }
@@ -330,27 +298,28 @@ impl DistanceTo {
         let mut found: Option<(usize, [f64; 3], NearestOn)> = None;
         // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
         let mut open = SmallVec::<[(f64, u32); 64]>::new();
-        open.extend(self.nodes.first().map(|root| (root.distance_squared(p), 0)));
+        open.extend(self.prepared.nodes.first().map(|root| (root.distance_squared(p), 0)));
         while let Some((away, number)) = open.pop() {
             // Not less: nothing to find, or a NaN.
             if !(away <= best * (1.0 + SAME)) {
                 continue;
             }
-            let node = &self.nodes[number as usize];
+            let node = &self.prepared.nodes[number as usize];
             if node.count == 0 {
-                let mut children = [number + 1, node.first].map(|n| (self.nodes[n as usize].distance_squared(p), n));
+                let mut children =
+                    [number + 1, node.first].map(|n| (self.prepared.nodes[n as usize].distance_squared(p), n));
                 if children[0].0 < children[1].0 {
                     children.swap(0, 1);
                 }
                 open.extend(children);
                 continue;
             }
-            for number in &self.order[node.first as usize..(node.first + node.count) as usize] {
-                let face = &self.faces[*number as usize];
+            for number in &self.prepared.order[node.first as usize..(node.first + node.count) as usize] {
+                let face = &self.prepared.faces[*number as usize];
                 if !wanted(face) {
                     continue;
                 }
-                let (place, part) = nearest_on(p, face.corners.map(|v| self.vertices[v as usize]));
+                let (place, part) = nearest_on(p, face.corners.map(|v| self.prepared.vertices[v as usize]));
                 let off = sub(p, place);
                 let square = dot(off, off);
                 if square < best * (1.0 - SAME) || (square <= best && found.is_none()) {
@@ -370,8 +339,8 @@ impl DistanceTo {
     #[must_use]
     pub fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
         let (number, place, _) = self.closest(p, (f64::INFINITY, |_: &Face| true), &mut SmallVec::new())?;
-        let face = &self.faces[number];
-        let corners = face.corners.map(|v| self.vertices[v as usize]);
+        let face = &self.prepared.faces[number];
+        let corners = face.corners.map(|v| self.prepared.vertices[v as usize]);
         let off = sub(p, place);
         Some(NearestTriangle {
             distance: dot(off, off).sqrt(),

@@ -11,6 +11,7 @@ mod parts;
 mod quadric;
 mod rays;
 mod thicken;
+mod tree;
 
 use crate::grid::Frame;
 pub use analytic::{AnalyticSurface, FaceSurfaces};
@@ -242,6 +243,8 @@ impl TriangleSoup {
         let mut mesh = Mesh::default();
         // Only looked up, so its order does not matter. Adding 0 makes −0 and 0 one.
         let mut numbers: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        // A closed surface has half as many vertices as triangles, about.
+        numbers.reserve(self.triangles.len() / 2);
         let mut sums: Vec<[f64; 3]> = Vec::new();
         for corners in &self.triangles {
             let key = corners.map(|p| p.map(|c| (c + 0.0).to_bits()));

@@ -1,6 +1,7 @@
 //! Rays through a surface of triangles.
 
-use super::distance::{DistanceTo, TreeNode};
+use super::distance::DistanceTo;
+use super::tree::TreeNode;
 use crate::vector::{along, cross, dot, sub};
 use smallvec::SmallVec;
 use std::ops::Range;
@@ -72,9 +73,9 @@ impl DistanceTo {
         } = range;
         let mut best = reach;
         let mut open = SmallVec::<[u32; 64]>::new();
-        open.extend(self.nodes.first().map(|_| 0));
+        open.extend(self.prepared.nodes.first().map(|_| 0));
         while let Some(number) = open.pop() {
-            let node = &self.nodes[number as usize];
+            let node = &self.prepared.nodes[number as usize];
             if !node.meets(p, direction, best) {
                 continue;
             }
@@ -82,9 +83,9 @@ impl DistanceTo {
                 open.extend([node.first, number + 1]);
                 continue;
             }
-            for number in &self.order[node.first as usize..(node.first + node.count) as usize] {
-                let face = &self.faces[*number as usize];
-                let corners = face.corners.map(|v| self.vertices[v as usize]);
+            for number in &self.prepared.order[node.first as usize..(node.first + node.count) as usize] {
+                let face = &self.prepared.faces[*number as usize];
+                let corners = face.corners.map(|v| self.prepared.vertices[v as usize]);
                 let slope = dot(face.normal, direction);
                 let away = dot(face.normal, sub(corners[0], p)) / slope;
                 if slope == 0.0 || !(away > least && away < best) {
@@ -115,16 +116,16 @@ impl DistanceTo {
     fn winding_along(&self, p: [f64; 3], direction: [f64; 3]) -> Option<i32> {
         let mut met = Vec::new();
         let mut open = SmallVec::<[u32; 64]>::new();
-        open.extend(self.nodes.first().map(|_| 0));
+        open.extend(self.prepared.nodes.first().map(|_| 0));
         while let Some(number) = open.pop() {
-            let node = &self.nodes[number as usize];
+            let node = &self.prepared.nodes[number as usize];
             if !node.meets(p, direction, f64::INFINITY) {
                 continue;
             }
             if node.count == 0 {
                 open.extend([node.first, number + 1]);
             } else {
-                met.extend_from_slice(&self.order[node.first as usize..(node.first + node.count) as usize]);
+                met.extend_from_slice(&self.prepared.order[node.first as usize..(node.first + node.count) as usize]);
             }
         }
         // A face may be in several leaves.
@@ -132,8 +133,8 @@ impl DistanceTo {
         met.dedup();
         let mut winding = 0;
         for number in met {
-            let face = &self.faces[number as usize];
-            let corners = face.corners.map(|v| self.vertices[v as usize]);
+            let face = &self.prepared.faces[number as usize];
+            let corners = face.corners.map(|v| self.prepared.vertices[v as usize]);
             let [a, b, c] = corners;
             let (slope, height) = (dot(face.normal, direction), dot(face.normal, sub(a, p)));
             let size = dot(sub(b, a), sub(b, a)).max(dot(sub(c, a), sub(c, a))).sqrt();

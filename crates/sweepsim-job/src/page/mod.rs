@@ -50,8 +50,10 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     } = *source;
     let (job, task) = (session.job, session.request.task);
     let programs = Programs::new(session);
-    let deviated = source.target.map(|target| Deviated::new(dexels, target));
-    let made = course::made(source, &programs)?;
+    let deviated = || source.target.map(|target| Deviated::new(dexels, target));
+    let others = || rayon::join(|| course::made(source, &programs), || solids::solids(job, task));
+    let (deviated, (made, (solids, fewer))) = rayon::join(deviated, others);
+    let made = made?;
     let mut page = Page::new(&report.job);
     let [nx, ny] = report.cells;
     page.lead = format!(
@@ -95,7 +97,6 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
         words::counted(source.threads as u64, "thread"),
         job.tolerance,
     );
-    let (solids, fewer) = solids::solids(job, task);
     page.notes.extend(fewer);
     let scene = scene(source, deviated.as_ref(), made, programs, solids);
     if let Some(own) = scene.surface.as_ref().filter(|own| own.whole > own.triangles.len()) {

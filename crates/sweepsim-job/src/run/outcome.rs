@@ -3,6 +3,7 @@
 use super::compute::{Computed, compute, describe};
 use super::merge::gathered;
 use super::{envelope, files};
+use crate::base::cache::RunCache;
 use crate::base::{Folder, JobError, Sink};
 use crate::frames;
 use crate::page::{self, PageSource};
@@ -88,7 +89,25 @@ impl Plan {
     /// # Errors
     /// [`JobError`]: too little memory, a stock or target that cannot be made, a sweep that fails, or
     /// [`JobError::Cancelled`].
-    pub fn run(mut self, monitor: &dyn Monitor) -> Result<Outcome, JobError> {
+    pub fn run(self, monitor: &dyn Monitor) -> Result<Outcome, JobError> {
+        let outcome = self.computed(monitor)?;
+        outcome.save();
+        Ok(outcome)
+    }
+
+    /// [`run`](Self::run), then [`write_to`](Outcome::write_to) of all that the request wants: a
+    /// [cache](crate::Request::cache) is written meanwhile.
+    ///
+    /// # Errors
+    /// Those of both.
+    pub fn run_to(self, sink: &mut dyn Sink, monitor: &dyn Monitor) -> Result<(Outcome, Written), JobError> {
+        let outcome = self.computed(monitor)?;
+        let written = outcome.write_to(sink, outcome.plan.request.wanted(), monitor);
+        outcome.save();
+        Ok((outcome, written?))
+    }
+
+    fn computed(mut self, monitor: &dyn Monitor) -> Result<Outcome, JobError> {
         self.check_room()?;
         let mut report = Report::default();
         report.seconds.insert("read".to_owned(), self.reading.as_secs_f64());
@@ -99,15 +118,17 @@ impl Plan {
             None => compute(session, &mut report)?,
         };
         describe(session, &done, &mut report);
-        if let Some(cache) = session.cache() {
-            cache.save();
-        }
         let plan = self;
         Ok(Outcome { plan, report, done })
     }
 }
 
 impl Outcome {
+    /// Keeps what was found for later runs, if that has not been done yet.
+    fn save(&self) {
+        self.plan.cache.iter().for_each(RunCache::save);
+    }
+
     /// The plan that was carried out.
     #[must_use]
     pub fn plan(&self) -> &Plan {
@@ -260,14 +281,14 @@ impl Outcome {
                 picture: picture.as_deref(),
             };
             session.phase("page");
-            let html = page::html(&source)?;
+            // One computes, the other writes.
+            let (html, ()) = rayon::join(|| page::html(&source), || self.save());
+            let html = html?;
             sink.write("report.html", &mut |file| file.write_all(html.as_bytes()))?;
             let text = json(&report)?;
             sink.write("report.json", &mut |file| file.write_all(text.as_bytes()))?;
         }
-        if let Some(cache) = session.cache() {
-            cache.save();
-        }
+        self.save();
         let certified = self.is_certified() && uncertified == 0;
         Ok(Written { report, certified })
     }

@@ -7,7 +7,9 @@ use crate::base::{JobError, check_room, folder_name, least_memory};
 use crate::request::{Directions, Given, Input, ProgramOptions, Request, Task};
 use crate::shards::PieceFile;
 use crate::warnings;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 use std::time::{Duration, Instant};
 use sweepsim_dexel::{Grid, Stock};
 pub use sweepsim_formats::Guess;
@@ -45,7 +47,13 @@ impl Request {
     pub fn plan(self) -> Result<Plan, JobError> {
         let began = Instant::now();
         self.check()?;
-        let (mut job, found, guessed) = read(&self)?;
+        // One reads, the other computes.
+        let (cache, job) = thread::scope(|scope| {
+            let cache = scope.spawn(|| known(&self));
+            let job = read(&self);
+            (cache.join().unwrap_or_else(|panic| resume_unwind(panic)), job)
+        });
+        let (mut job, found, guessed) = job?;
         let asked = match self.cell {
             Some(side) => Some(("cell", covering(&job.grid, side))),
             None => self.cells.map(|cells| ("cells", cells)),
@@ -59,7 +67,6 @@ impl Request {
         if let Some([gouge, excess]) = self.limits {
             job.limits = Some(Limits::new(gouge, excess));
         }
-        let cache = known(&self);
         let plan = Plan {
             request: self,
             job,

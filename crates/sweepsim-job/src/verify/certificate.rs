@@ -160,7 +160,7 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
         let soup = asked.obstacles[*number].triangles.as_ref();
         let solid = soup
             .map_err(String::clone)
-            .and_then(|soup| solids::of_mesh(soup, "the target", 0.0, &()));
+            .and_then(|soup| solids::of_mesh(soup, "the target", 0.0, (None, &())));
         solid.map_err(|why| JobError::file(file, why))?;
     }
     let own = asked.scene();

@@ -6,6 +6,7 @@ use super::{axes, proof, targets, work};
 use crate::base::JobError;
 use crate::session::{Session, phase};
 use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
+use sweepsim_dexel::DistanceTo;
 use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
 
 pub(super) fn describe(
@@ -13,6 +14,7 @@ pub(super) fn describe(
     session: Session,
     done: &Judgement,
     found: Option<&Deviations>,
+    distance: Option<&DistanceTo>,
 ) -> Result<Option<Certified>, JobError> {
     let job = session.job;
     let mut texts = ProgramTexts::new(session);
@@ -25,10 +27,13 @@ pub(super) fn describe(
     let (mut statements, mut certified) = (Vec::new(), None);
     if session.request.judging.proof && !done.stopped {
         let regions = found.iter().flat_map(|found| &found.regions);
-        let is_left = { regions }.any(|region| region.kind == DeviationKind::Excess);
-        let seen = (&findings[..], is_left);
+        let known = proof::Known {
+            findings: &findings,
+            is_left: { regions }.any(|region| region.kind == DeviationKind::Excess),
+            distance,
+        };
         let new;
-        (statements, new, certified) = phase(report, "proof", || proof::statements(session, &mut texts, seen))?;
+        (statements, new, certified) = phase(report, "proof", || proof::statements(session, &mut texts, known))?;
         findings.extend(new);
         report.statements = Some(statements.clone());
     }

@@ -195,7 +195,8 @@ impl Before {
             }
             _ => None,
         };
-        let certified = findings::describe(report, session, &done, found.as_ref())?;
+        let distance = target.as_ref().map(Target::distance);
+        let certified = findings::describe(report, session, &done, found.as_ref(), distance)?;
         proof::compare_registers(session, report)?;
         report.scope = Some(scope::scope(session, sets));
         axes::describe(report, session);

@@ -1,6 +1,6 @@
 //! Targets with their limits, and deviations from them for reports.
 
-use crate::base::cache::Digest;
+use crate::base::cache::{Digest, Key};
 use crate::session::Session;
 use sweepsim::verify::{Deviation, DeviationKind, Deviations, Region, Target, TargetError, TargetRegion, TargetShape};
 use sweepsim_dexel::{Dexels, Grid, TriangleSoup};
@@ -15,46 +15,52 @@ pub(super) fn of_job(session: Session, grid: &Grid) -> Result<Option<Target>, Ta
     let Some(target) = &job.target else { return Ok(None) };
     let parts = job.limits.as_ref().map(|limits| target.by_region(limits));
     let (rest, regions) = regions_of(&target.mesh, parts, job.limits.as_ref(), job.tolerance);
-    let shape = TargetShape::new(&target.mesh, rest, &regions)?;
-    on_grid(session, grid, |lines| match lines {
-        Some(lines) => shape.known(lines),
-        None => shape.on(grid),
-    })
-    .map(Some)
+    let shape = || TargetShape::new(&target.mesh, rest, &regions);
+    let (shape, lines) = rayon::join(shape, || kept(session, grid));
+    on_grid(session, grid, &shape?, lines).map(Some)
 }
 
 /// A target on another grid.
 pub(super) fn on(session: Session, target: &Target, grid: &Grid) -> Result<Target, TargetError> {
-    on_grid(session, grid, |lines| match lines {
-        Some(lines) => target.shape().known(lines),
-        None => target.on(grid),
-    })
+    on_grid(session, grid, target.shape(), kept(session, grid))
 }
 
-/// What of a target is on the lines of a grid, if it was made before; else it is made, and kept.
+fn key(session: Session, grid: &Grid) -> Key {
+    Digest::of("target").bytes(&session.digests().1).value(grid).key()
+}
+
+/// What of the target is on the lines of a grid, if it was made before.
+fn kept(session: Session, grid: &Grid) -> Option<[Dexels; 3]> {
+    let cache = session.cache()?;
+    let known = cache.get(&key(session, grid))?;
+    let lines = read_lines(known, grid);
+    if lines.is_none() {
+        cache.spoilt();
+    }
+    lines
+}
+
+/// A target on the lines of a grid: as kept, or made and kept.
 fn on_grid(
     session: Session,
     grid: &Grid,
-    make: impl Fn(Option<[Dexels; 3]>) -> Result<Target, TargetError>,
+    shape: &TargetShape,
+    lines: Option<[Dexels; 3]>,
 ) -> Result<Target, TargetError> {
-    let Some(cache) = session.cache() else {
-        return make(None);
-    };
-    let key = Digest::of("target").bytes(&session.digests().1).value(grid).key();
-    if let Some(known) = cache.get(&key) {
-        if let Some(lines) = read_lines(known, grid) {
-            return make(Some(lines));
-        }
-        cache.spoilt();
+    if let Some(lines) = lines {
+        return shape.known(lines);
     }
-    let target = make(None)?;
+    let target = shape.on(grid)?;
+    let Some(cache) = session.cache() else {
+        return Ok(target);
+    };
     let mut lines = Vec::new();
     for own in [target.solid(), target.core(), target.allowed()] {
         let state = own.state();
         lines.extend((state.len() as u64).to_le_bytes());
         lines.extend(state);
     }
-    cache.put(key, lines);
+    cache.put(key(session, grid), lines);
     Ok(target)
 }
 

@@ -49,9 +49,9 @@ pub(super) fn name_of(kind: BodyKind) -> &'static str {
 }
 
 /// Bytes that can be read from any place on.
-trait Text: BufRead + Seek {}
+trait Text: BufRead + Seek + Send {}
 
-impl<T: BufRead + Seek> Text for T {}
+impl<T: BufRead + Seek + Send> Text for T {}
 
 /// A file, and where every so many lines begin.
 struct Index {

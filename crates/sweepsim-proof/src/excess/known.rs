@@ -17,8 +17,8 @@ const TOGETHER: usize = 64;
 pub(super) struct Blocks<'a> {
     recall: &'a dyn Recall,
     all: Vec<([f32; 6], QuestionDigest)>,
-    /// What is asked of all patches.
-    question: Vec<u8>,
+    /// A digest of what is asked of all patches.
+    question: QuestionDigest,
 }
 
 impl<'a> Blocks<'a> {
@@ -53,7 +53,7 @@ impl<'a> Blocks<'a> {
         Self {
             recall,
             all,
-            question: question.0,
+            question: recall.digest(&question.0),
         }
     }
 
@@ -79,7 +79,7 @@ impl<'a> Blocks<'a> {
         count: usize,
         look: impl FnOnce() -> Option<(Vec<Found>, Bounds)>,
     ) -> Option<Vec<Found>> {
-        let mut question = Writing(self.question.clone());
+        let mut question = Writing(self.question.to_vec());
         asked(&mut question);
         let key = self.recall.digest(&question.0);
         let known = self.recall.recall(&key).and_then(|bytes| self.read(&bytes, count));

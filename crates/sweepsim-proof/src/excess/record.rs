@@ -12,11 +12,13 @@
 //! | 13, 14, 15 | Halved between two normals. |
 //! | 16 | For any three of its normals. |
 
+use super::patch::{Halved, Patch, Patches};
 use super::removed::Holder;
-use super::surface::{Halved, Patch};
+use super::surface::Surface;
 use crate::numbers::write_number;
 use rayon::prelude::*;
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// The trees of some patches of the surface: the first, how many, and the bytes.
 pub type PatchTrees = (usize, usize, Vec<u8>);
@@ -82,46 +84,78 @@ fn bytes_of(halved: Halved) -> SmallVec<[u8; 5]> {
     }
 }
 
-/// The patches of the surface in parts, those longer than some length halved; and how they make up the surface.
-pub(super) fn parts(surface: &[SmallVec<[Patch; 1]>], longest: f64) -> (Vec<Patch>, Vec<Step>) {
-    let (mut parts, mut steps) = (Vec::with_capacity(surface.len()), Vec::with_capacity(2 * surface.len()));
-    let some: Vec<_> = surface
-        .par_chunks(TOGETHER)
-        .map(|some| parts_of(some, longest))
-        .collect();
-    for (own, of_own) in some {
-        let before = parts.len();
-        steps.extend(of_own.into_iter().map(|step| match step {
-            Step::Part(part) => Step::Part(before + part),
-            other => other,
-        }));
-        parts.extend(own);
-    }
-    (parts, steps)
+/// The patches of a surface in parts, some of which lie together.
+pub(super) struct Parts {
+    some: Vec<Vec<Patch>>,
+    /// How many there are before each of these, and in all.
+    before: Vec<usize>,
 }
 
-fn parts_of(surface: &[SmallVec<[Patch; 1]>], longest: f64) -> (Vec<Patch>, Vec<Step>) {
-    let (mut parts, mut steps) = (Vec::with_capacity(surface.len()), Vec::with_capacity(2 * surface.len()));
-    for own in surface {
-        steps.push(Step::Begin);
-        match own.len() {
-            0 => steps.push(Step::Byte(0)),
-            1 => {}
-            _ => steps.push(Step::Byte(16)),
+impl Parts {
+    pub fn len(&self) -> usize {
+        self.before.last().copied().unwrap_or_default()
+    }
+
+    pub fn get(&self, number: usize) -> &Patch {
+        let own = self.before.partition_point(|before| *before <= number) - 1;
+        &self.some[own][number - self.before[own]]
+    }
+}
+
+/// The patches of a surface in parts, those longer than some length halved; and, if that is to be recorded, how they
+/// make up the surface.
+pub(super) fn parts(surface: &Surface, longest: f64, recorded: bool) -> (Parts, Vec<Step>) {
+    let sites: Vec<Range<usize>> = (0..surface.sites())
+        .step_by(TOGETHER)
+        .map(|first| first..surface.sites().min(first + TOGETHER))
+        .collect();
+    let made: Vec<_> = sites
+        .into_par_iter()
+        .map(|sites| parts_of(surface, sites, longest, recorded))
+        .collect();
+    let (mut some, mut before, mut steps) = (Vec::with_capacity(made.len()), vec![0], Vec::new());
+    let mut count = 0;
+    for (own, of_own) in made {
+        steps.extend(of_own.into_iter().map(|step| match step {
+            Step::Part(part) => Step::Part(count + part),
+            other => other,
+        }));
+        count += own.len();
+        before.push(count);
+        some.push(own);
+    }
+    (Parts { some, before }, steps)
+}
+
+fn parts_of(surface: &Surface, sites: Range<usize>, longest: f64, recorded: bool) -> (Vec<Patch>, Vec<Step>) {
+    let (mut parts, mut steps) = (Vec::with_capacity(2 * sites.len()), Vec::new());
+    let mut step = |step| {
+        if recorded {
+            steps.push(step);
         }
-        let mut open: Vec<Patch> = own.iter().rev().cloned().collect();
+    };
+    let mut open = Vec::new();
+    let mut add = |own: Patches| {
+        step(Step::Begin);
+        match own.len() {
+            0 => step(Step::Byte(0)),
+            1 => {}
+            _ => step(Step::Byte(16)),
+        }
+        open.extend(own.into_iter().rev());
         while let Some(patch) = open.pop() {
             let is_long = patch.length() > longest;
             let halves = is_long.then(|| patch.halves(0.0, f64::MIN_POSITIVE, None)).flatten();
             if let Some((halved, [first, second])) = halves {
-                steps.push(Step::Halved(halved));
+                step(Step::Halved(halved));
                 open.extend([second, first]);
             } else {
-                steps.push(Step::Part(parts.len()));
+                step(Step::Part(parts.len()));
                 parts.push(patch);
             }
         }
-    }
+    };
+    sites.for_each(|site| surface.patches(site, &mut add));
     (parts, steps)
 }
 

@@ -4,10 +4,10 @@ mod look;
 
 use super::found::Found;
 use super::known::{Blocks, nothing};
-use super::record::{PatchTrees, Record, Step, key, parts, trees};
+use super::record::{Parts, PatchTrees, Record, Step, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
-use super::surface::Patch;
+use super::surface::Surface;
 use crate::motion::{Cutter, Stretch};
 use crate::recall::{Recall, Writing};
 use crate::search::Limits;
@@ -109,10 +109,11 @@ pub fn highest_from(
         own.map(|own| own.stretches(0..own.path.moves(), limits.deviation))
             .collect()
     };
+    // Without some of the triangles, the patches are not those of a checker; and of a mesh, it knows no regions.
+    let recorded = recorded && target.is_whole && regions(stock, 0.0).is_some();
     let patches = || {
-        let surface = Patch::around(&target.triangles);
-        let total: f64 = surface.iter().flatten().map(|patch| patch.length().powi(2)).sum();
-        parts(&surface, (total / PARTS).sqrt())
+        let surface = Surface::new(&target.triangles);
+        parts(&surface, (surface.squares / PARTS).sqrt(), recorded)
     };
     let (motions, (patches, steps)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, patches);
     let courses = || cutters.iter().zip(&motions);
@@ -139,8 +140,7 @@ pub fn highest_from(
         } else {
             FxHashMap::default()
         },
-        // Without some of the triangles, the patches are not those of a checker; and of a mesh, it knows no regions.
-        recorded: recorded && target.is_whole && regions(stock, 0.0).is_some(),
+        recorded,
     };
     let blocks = recall.keeps().then(|| {
         let mut question = Writing::default();
@@ -156,7 +156,7 @@ struct Scene<'a> {
     target: &'a Target,
     before: Before,
     removed: Removed<'a>,
-    patches: Vec<Patch>,
+    patches: Parts,
     /// How the patches make up the surface.
     steps: Vec<Step>,
     /// The numbers of triangles by their corners, for records.
@@ -226,7 +226,7 @@ impl Scene<'_> {
         patches: usize,
         (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
     ) -> Option<Vec<Found>> {
-        let mut found: Vec<Found> = self.patches.iter().map(|_| Found::default()).collect();
+        let mut found: Vec<Found> = (0..self.patches.len()).map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
         // Short looks everywhere, then what is left.
         let mut left = patches;
@@ -242,11 +242,11 @@ impl Scene<'_> {
             let (some, others): (Vec<usize>, Vec<usize>) = open.iter().partition(|number| **number % SAMPLED == 0);
             for numbers in [some, others] {
                 let again = self.look_at(&numbers, (distance, known, FINER * width), each, (blocks, monitor))?;
-                for (number, mut again) in numbers.into_iter().zip(again) {
+                for (number, mut again) in numbers.iter().zip(again) {
                     left = left.saturating_sub(again.patches);
                     known = known.max(again.height());
-                    again.patches += found[number].patches;
-                    found[number] = again;
+                    again.patches += found[*number].patches;
+                    found[*number] = again;
                 }
                 if found.iter().any(|found| found.is_left) {
                     return Some(found);
@@ -264,7 +264,7 @@ impl Scene<'_> {
         (distance, known, finer): (f64, f64, f64),
         each: usize,
         (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
-    ) -> Option<Vec<Found>> {
+    ) -> Option<impl Iterator<Item = Found>> {
         let (done, total) = (AtomicUsize::new(0), numbers.len());
         let look = |numbers: &[usize]| {
             let (mut recent, mut around) = (None, nothing());
@@ -282,7 +282,7 @@ impl Scene<'_> {
                     recent,
                     around,
                 };
-                search.look(self.patches[*number].clone(), each);
+                search.look(self.patches.get(*number).clone(), each);
                 (recent, around) = (search.recent, search.around);
                 all.push(search.found);
             }
@@ -302,7 +302,7 @@ impl Scene<'_> {
             Some(found)
         };
         let all: Option<Vec<Vec<Found>>> = numbers.par_chunks(TOGETHER).map(some).collect();
-        Some(all?.into_iter().flatten().collect())
+        Some(all?.into_iter().flatten())
     }
 
     fn is_left(&self, point: &Vector3<f64>) -> bool {

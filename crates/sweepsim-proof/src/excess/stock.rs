@@ -1,7 +1,7 @@
 //! What there was before the first cut.
 
 use super::bounding::{Bound, Weights, bounding};
-use super::surface::Points;
+use super::patch::Points;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 use sweepsim_check::Plane;

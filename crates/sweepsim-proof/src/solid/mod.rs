@@ -53,7 +53,12 @@ impl Target {
     pub fn new(soup: &TriangleSoup, lift: f64) -> Result<Self, MeshError> {
         let (closed, distance) = rayon::join(|| soup.check_closed(), || DistanceTo::new(soup));
         closed?;
-        let distance = distance?;
+        Ok(Self::of_closed(soup, lift, distance?))
+    }
+
+    /// The same of triangles that are known to enclose a solid, with the distance to just these.
+    #[must_use]
+    pub fn of_closed(soup: &TriangleSoup, lift: f64, distance: DistanceTo) -> Self {
         let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         let mut triangles = Vec::with_capacity(soup.triangles.len());
         for (number, corners) in (0..).zip(&soup.triangles) {
@@ -75,7 +80,7 @@ impl Target {
         let all = Near::Many((0..triangles.len() as u32).collect());
         let size = low.amax().max(high.amax());
         let (centre, half) = root(&low, &high);
-        Ok(Self {
+        Self {
             root: RwLock::new(Cell::new((centre, half), lift, &all, &triangles, &distance)),
             cube: (centre, half),
             lift,
@@ -85,7 +90,7 @@ impl Target {
             cells_left: AtomicUsize::new(MOST_CELLS),
             crowded: AtomicBool::new(false),
             size,
-        })
+        }
     }
 
     /// Where its triangles cross or cover each other, at most so many places: nothing can be proven of what is inside.

@@ -2,6 +2,7 @@
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::io::Write;
 
@@ -26,9 +27,21 @@ pub(crate) struct Entry {
     bytes: usize,
 }
 
+/// Arrays, each with its kind.
+#[derive(Debug, Default)]
+pub(crate) struct Arrays(Vec<Array>);
+
+#[derive(Debug)]
+struct Array {
+    name: &'static str,
+    kind: Kind,
+    count: usize,
+    bytes: Vec<u8>,
+}
+
 /// Arrays, compressed one by one.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Arrays {
+pub(crate) struct Packed {
     pub entries: Vec<Entry>,
     pub bytes: Vec<u8>,
 }
@@ -52,47 +65,75 @@ fn planes<const N: usize>(numbers: impl ExactSizeIterator<Item = u32>) -> Vec<u8
     planes
 }
 
+impl Array {
+    fn packed(self) -> Packed {
+        let mut encoder = ZlibEncoder::new(Vec::with_capacity(self.bytes.len() / 2), LEVEL);
+        let packed = encoder.write_all(&self.bytes).and_then(|()| encoder.finish());
+        let bytes = packed.expect("memory can be written to");
+        let entry = Entry {
+            name: self.name,
+            kind: self.kind,
+            count: self.count,
+            bytes: bytes.len(),
+        };
+        Packed {
+            entries: vec![entry],
+            bytes,
+        }
+    }
+}
+
 impl Arrays {
-    fn push(&mut self, name: &'static str, kind: Kind, count: usize, plain: &[u8]) {
-        let mut encoder = ZlibEncoder::new(Vec::with_capacity(plain.len() / 2), LEVEL);
-        let packed = encoder.write_all(plain).and_then(|()| encoder.finish());
-        let packed = packed.expect("memory can be written to");
-        let bytes = packed.len();
-        self.entries.push(Entry {
+    fn push(&mut self, name: &'static str, kind: Kind, count: usize, bytes: Vec<u8>) {
+        self.0.push(Array {
             name,
             kind,
             count,
             bytes,
         });
-        self.bytes.extend_from_slice(&packed);
     }
 
     /// Bytes as they are: text.
-    pub fn text(&mut self, name: &'static str, text: &[u8]) {
+    pub fn text(&mut self, name: &'static str, text: Vec<u8>) {
         // Not predicted: text does not resemble its neighbour.
         self.push(name, Kind::U8, text.len(), text);
     }
 
     pub fn i8(&mut self, name: &'static str, numbers: &[i8]) {
         let plain = planes::<1>(numbers.iter().map(|n| *n as u32));
-        self.push(name, Kind::I8, numbers.len(), &plain);
+        self.push(name, Kind::I8, numbers.len(), plain);
     }
 
     pub fn u16(&mut self, name: &'static str, numbers: &[u16]) {
         let plain = planes::<2>(numbers.iter().map(|n| u32::from(*n)));
-        self.push(name, Kind::U16, numbers.len(), &plain);
+        self.push(name, Kind::U16, numbers.len(), plain);
     }
 
     pub fn i16(&mut self, name: &'static str, numbers: &[i16]) {
         let plain = planes::<2>(numbers.iter().map(|n| *n as u32));
-        self.push(name, Kind::I16, numbers.len(), &plain);
+        self.push(name, Kind::I16, numbers.len(), plain);
     }
 
     pub fn u32(&mut self, name: &'static str, numbers: &[u32]) {
         let plain = planes::<4>(numbers.iter().copied());
-        self.push(name, Kind::U32, numbers.len(), &plain);
+        self.push(name, Kind::U32, numbers.len(), plain);
     }
 
+    /// These arrays, then those.
+    pub fn append(&mut self, mut other: Self) {
+        self.0.append(&mut other.0);
+    }
+
+    /// All compressed, each by itself.
+    pub fn packed(self) -> Packed {
+        let each: Vec<Packed> = self.0.into_par_iter().map(Array::packed).collect();
+        let mut all = Packed::default();
+        each.iter().for_each(|own| all.append(own));
+        all
+    }
+}
+
+impl Packed {
     /// These arrays, then those.
     pub fn append(&mut self, other: &Self) {
         self.entries.extend_from_slice(&other.entries);

@@ -1,6 +1,6 @@
 //! All data of the viewer within a number of bytes.
 
-use super::arrays::{Arrays, Entry, Scale};
+use super::arrays::{Entry, Packed, Scale};
 use super::layers::{self, CourseHead, HEIGHTS, LayerHead};
 use super::machine::{self, MachineHead};
 use super::others::{self, MeshHead, TrackHead};
@@ -59,37 +59,37 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     let height = Scale::over(heights.chain(of_start).chain(of_frames), HEIGHTS);
     // All deviations have one step.
     let deviation = layers::deviation_step(scene);
-    let (((meshes, mesh_arrays), (programs, texts)), (mut part, mut normals)) = rayon::join(
-        || {
-            rayon::join(
-                || others::meshes(&scene.tools, &scene.solids),
-                || others::programs(&scene.programs),
-            )
-        },
-        || {
-            rayon::join(
-                || Part::new(&scene.part, deviation, &height),
-                || layers::normals(&scene.part),
-            )
-        },
-    );
-    let track = scene.track.as_ref().map(others::track);
-    let mut fixed = mesh_arrays;
-    if let Some((_, arrays)) = &track {
-        fixed.append(arrays);
-    }
-    let machine = scene.machine.as_ref().map(machine::machine);
-    if let Some((_, arrays)) = &machine {
-        fixed.append(arrays);
-    }
+    let others = || {
+        let (meshes, mut fixed) = others::meshes(&scene.tools, &scene.solids);
+        let track = scene.track.as_ref().map(|own| {
+            let (head, arrays) = others::track(own);
+            fixed.append(arrays);
+            head
+        });
+        let machine = scene.machine.as_ref().map(|own| {
+            let (head, arrays) = machine::machine(own);
+            fixed.append(arrays);
+            head
+        });
+        let (programs, texts) = others::programs(&scene.programs);
+        let (fixed, texts) = rayon::join(|| fixed.packed(), || texts.packed());
+        (meshes, track, machine, programs, fixed, texts)
+    };
+    let of_part = || {
+        rayon::join(
+            || Part::new(&scene.part, deviation, &height),
+            || layers::normals(&scene.part).packed(),
+        )
+    };
+    let ((meshes, track, machine, programs, mut fixed, texts), (mut part, mut normals)) = rayon::join(others, of_part);
     let mut left_out = Vec::new();
-    let fits = |parts: &[&Arrays]| encoded(parts.iter().map(|part| part.bytes.len()).sum()) <= most;
+    let fits = |parts: &[&Packed]| encoded(parts.iter().map(|part| part.bytes.len()).sum()) <= most;
 
     // The part as fine as it is, with normals if they fit.
     let mut coarser = None::<DexelLayer>;
     if !fits(&[&fixed, &part.arrays, &normals]) {
         left_out.push("normals of the surface".to_owned());
-        normals = Arrays::default();
+        normals = Packed::default();
     }
     let mut nth = 1;
     while !fits(&[&fixed, &part.arrays, &normals]) {
@@ -105,19 +105,21 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     if nth > 1 {
         left_out.push(format!("all but every {nth}th line along x and y"));
     }
-    let mut sharp = scene.surface.as_ref().map(|own| surface::surface(own, deviation));
-    if let Some((_, arrays)) = &sharp {
-        if fits(&[&fixed, &part.arrays, &normals, arrays]) {
-            fixed.append(arrays);
+    let mut sharp = None;
+    if let Some(own) = &scene.surface {
+        let (head, arrays) = surface::surface(own, deviation);
+        let arrays = arrays.packed();
+        if fits(&[&fixed, &part.arrays, &normals, &arrays]) {
+            fixed.append(&arrays);
+            sharp = Some(head);
         } else {
             left_out.push("the surface between the lines".to_owned());
-            sharp = None;
         }
     }
     let (mut kept, mut names) = (texts, programs);
     if !fits(&[&fixed, &part.arrays, &normals, &kept]) {
         left_out.push("the text of the program, but for the lines of findings".to_owned());
-        (kept, names) = (Arrays::default(), Vec::new());
+        (kept, names) = (Packed::default(), Vec::new());
     }
     // As many moments of the course as fit.
     let mut shown = None;
@@ -125,6 +127,7 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         let mut frames: Vec<KeyFrame> = course.frames.clone();
         loop {
             let (head, arrays) = layers::course(course, &frames, &height, deviation);
+            let arrays = arrays.packed();
             if fits(&[&fixed, &part.arrays, &normals, &kept, &arrays]) {
                 shown = Some((head, arrays));
                 break;
@@ -154,11 +157,11 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         limits: scene.limits,
         frame: scene.frame,
         part: part.head,
-        surface: sharp.map(|(head, _)| head),
+        surface: sharp,
         course,
-        track: track.map(|(head, _)| head),
+        track,
         meshes,
-        machine: machine.map(|(head, _)| head),
+        machine,
         paths: scene.paths.clone(),
         setups: scene.setups.clone(),
         programs: names,
@@ -176,19 +179,19 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
 /// The part without its normals.
 struct Part {
     head: LayerHead,
-    arrays: Arrays,
+    arrays: Packed,
 }
 
 impl Part {
     fn new(layer: &DexelLayer, deviation: Option<f64>, height: &Scale) -> Self {
         let mut arrays = layers::material(layer, height, ["part.counts", "lower", "upper"]);
-        arrays.append(&layers::makers(layer));
+        arrays.append(layers::makers(layer));
         if let Some(step) = deviation {
-            arrays.append(&layers::deviations(layer, step, ["lower.deviation", "upper.deviation"]));
+            arrays.append(layers::deviations(layer, step, ["lower.deviation", "upper.deviation"]));
         }
         Self {
             head: LayerHead::new(layer.area),
-            arrays,
+            arrays: arrays.packed(),
         }
     }
 }

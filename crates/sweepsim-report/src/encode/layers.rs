@@ -159,7 +159,7 @@ pub(crate) fn course(course: &Course, frames: &[KeyFrame], scale: &Scale, step: 
     arrays.u16("frames.lower", &lower);
     arrays.u16("frames.upper", &upper);
     if let Some(step) = step {
-        arrays.append(&deviations(
+        arrays.append(deviations(
             &course.start,
             step,
             ["start.lower.deviation", "start.upper.deviation"],

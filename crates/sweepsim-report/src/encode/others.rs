@@ -2,7 +2,6 @@
 
 use super::arrays::{Arrays, Scale, octahedron};
 use crate::scene::{ProgramText, Solid, SolidKind, ToolPart, ToolShape, Track};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Steps of the clock and of tips: a single-precision number of the page holds each exactly.
@@ -146,24 +145,13 @@ pub(crate) fn meshes(tools: &[ToolPart], solids: &[Solid]) -> (MeshHead, Arrays)
         })
         .collect();
     let places = [0, 1, 2].map(|k| Scale::over(meshes.vertices.iter().map(|v| v[k]), u32::from(u16::MAX)));
-    let coordinates = |(k, name): (usize, &'static str)| {
+    let mut arrays = Arrays::default();
+    for (k, name) in ["mesh.x", "mesh.y", "mesh.z"].into_iter().enumerate() {
         let steps = |v: &[f64; 3]| places[k].steps(v[k], u32::from(u16::MAX)) as u16;
         let own: Vec<u16> = meshes.vertices.iter().map(steps).collect();
-        let mut arrays = Arrays::default();
         arrays.u16(name, &own);
-        arrays
-    };
-    let names = [(0, "mesh.x"), (1, "mesh.y"), (2, "mesh.z")];
-    let (along, corners): (Vec<Arrays>, Arrays) = rayon::join(
-        || names.into_par_iter().map(coordinates).collect(),
-        || {
-            let mut arrays = Arrays::default();
-            arrays.u32("mesh.corners", &meshes.corners);
-            arrays
-        },
-    );
-    let mut arrays = Arrays::default();
-    along.iter().chain([&corners]).for_each(|own| arrays.append(own));
+    }
+    arrays.u32("mesh.corners", &meshes.corners);
     (MeshHead { tools, solids, places }, arrays)
 }
 
@@ -172,6 +160,6 @@ pub(crate) fn programs(programs: &[ProgramText]) -> (Vec<String>, Arrays) {
     let names = programs.iter().map(|program| program.name.clone()).collect();
     let texts: Vec<String> = programs.iter().map(|program| program.text.replace('\0', " ")).collect();
     let mut arrays = Arrays::default();
-    arrays.text("programs", texts.join("\0").as_bytes());
+    arrays.text("programs", texts.join("\0").into_bytes());
     (names, arrays)
 }

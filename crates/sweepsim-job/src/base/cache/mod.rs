@@ -145,13 +145,16 @@ impl RunCache {
     /// Writes what was used and what was found, unless that is what the file holds. A file that cannot be written is
     /// done without.
     pub fn save(&self) {
-        let mut now = self.now();
-        if !std::mem::take(&mut now.is_new) {
-            return;
-        }
-        let used = now.used.iter();
-        let used = used.filter_map(|key| Some((key, self.earlier.get(key)?)));
-        let made = now.made.iter().map(|(key, value)| (key, &value[..]));
+        // Others may go on meanwhile.
+        let (used, mut own) = {
+            let mut now = self.now();
+            if !std::mem::take(&mut now.is_new) {
+                return;
+            }
+            (now.used.clone(), std::mem::take(&mut now.made))
+        };
+        let used = used.iter().filter_map(|key| Some((key, self.earlier.get(key)?)));
+        let made = own.iter().map(|(key, value)| (key, &value[..]));
         let all: BTreeMap<&Key, &[u8]> = used.chain(made).collect();
         let folder = self.file.parent().unwrap_or(Path::new(""));
         let write = || {
@@ -161,11 +164,13 @@ impl RunCache {
             file::write(&all, &mut file).map_err(failed)?;
             file.commit().map_err(|error| error.to_string())
         };
-        match write() {
+        let written = write();
+        self.now().made.append(&mut own);
+        match written {
             Ok(()) => self.leave_room(folder),
             Err(why) => {
                 let note = format!("the cache could not be written: {why}");
-                now.notes.push(note);
+                self.now().notes.push(note);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Solids as triangles, for proofs about them.
 
 use std::f64::consts::PI;
-use sweepsim_dexel::{Stock, TriangleSoup};
+use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
 use sweepsim_proof::{Fault, Recall, Target};
 
 /// As many faults of a solid are named.
@@ -12,19 +12,25 @@ const CHORDS: f64 = 0.005;
 const SIDES: f64 = 720.0;
 
 /// A solid between triangles, or why it is none. `what`: its name; `lift`: how far something may have to be lifted out
-/// of it, about; `recall`: what earlier runs know of it.
+/// of it, about; `known`: the distance to it, if that was prepared, and what earlier runs know of it.
 pub(in crate::verify) fn of_mesh(
     mesh: &TriangleSoup,
     what: &str,
     lift: f64,
-    recall: &dyn Recall,
+    (distance, recall): (Option<&DistanceTo>, &dyn Recall),
 ) -> Result<Target, String> {
-    let solid = Target::new(mesh, lift).map_err(|error| format!("{what} is no solid: {error}"))?;
-    if mesh.volume() <= 0.0 {
+    let sound = recall.digest(b"without faults");
+    let is_sound = recall.recall(&sound).is_some();
+    let closed = || if is_sound { Ok(()) } else { mesh.check_closed() };
+    let distance = || distance.cloned().map_or_else(|| DistanceTo::new(mesh), Ok);
+    let (closed, distance) = rayon::join(closed, distance);
+    let distance = closed.and(distance);
+    let distance = distance.map_err(|error| format!("{what} is no solid: {error}"))?;
+    if !is_sound && mesh.volume() <= 0.0 {
         return Err(format!("{what} is inside out"));
     }
-    let sound = recall.digest(b"without faults");
-    if recall.recall(&sound).is_some() {
+    let solid = Target::of_closed(mesh, lift, distance);
+    if is_sound {
         return Ok(solid);
     }
     if let Some(faults) = faulty(&solid, what) {
@@ -122,7 +128,7 @@ mod tests {
     #[test]
     fn a_prism_holds_its_cylinder_and_little_more() {
         let (base, axis, radius, height) = ([1.0, -2.0, 3.0], [0.3, -1.0, 0.5], 7.0, 11.0);
-        let solid = of_mesh(&prism(base, axis, radius, height), "it", 0.0, &()).expect("a solid");
+        let solid = of_mesh(&prism(base, axis, radius, height), "it", 0.0, (None, &())).expect("a solid");
         let z = nalgebra::Vector3::from(axis).normalize();
         for k in 0..500 {
             let (angle, up) = (f64::from(k) * 0.1, f64::from(k % 10) / 9.0 * height);

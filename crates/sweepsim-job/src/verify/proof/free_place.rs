@@ -7,8 +7,6 @@ use super::Proof;
 use super::pairs::{OnPath, Range};
 use crate::base::{JobError, words};
 use crate::session::Session;
-use crate::verify::asked::AskedAll;
-use crate::verify::asked::material::is_guessed;
 use crate::verify::proof::pairs::with_remains;
 use sweepsim_formats::{Job, OnMachine};
 use sweepsim_machine::{Course, Outcome};
@@ -41,12 +39,7 @@ pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, O
         return Ok((None, Some(note.to_owned())));
     }
     session.phase("place");
-    let proof = Proof {
-        session,
-        scene: None,
-        asked: AskedAll::new(session.job, session.request, is_guessed(session.plan)),
-        recalls: false,
-    };
+    let proof = Proof::new(session, false);
     let found = free(&proof, session.request.judging.length_range)?;
     let note = match found {
         Some([low, high]) => {

@@ -20,7 +20,9 @@ use super::work;
 use crate::base::JobError;
 use crate::base::cache::{Digest, Key, RunCache};
 use crate::session::Session;
+use std::sync::OnceLock;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
+use sweepsim_dexel::DistanceTo;
 use sweepsim_formats::{
     Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
 };
@@ -56,8 +58,20 @@ struct Proof<'a> {
     asked: AskedAll<'a>,
     /// What a certificate is about, if one is wanted: only then, proofs are recorded.
     scene: Option<Scene>,
-    /// Whether what earlier runs have proven is used.
+    /// Whether what earlier runs have proven is used; then, digests of what it is about: the stock, and each obstacle.
     recalls: bool,
+    digests: Vec<OnceLock<Key>>,
+}
+
+/// What is known before anything is proven.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    /// What was found on the lines.
+    pub findings: &'a [ReportedFinding],
+    /// Whether material was left there.
+    pub is_left: bool,
+    /// The distance to the target, if there is one.
+    pub distance: Option<&'a DistanceTo>,
 }
 
 /// What earlier runs have proven about something.
@@ -92,9 +106,21 @@ impl Recall for Recalled<'_> {
 }
 
 impl<'a> Proof<'a> {
+    /// Without a certificate.
+    fn new(session: Session<'a>, recalls: bool) -> Self {
+        let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
+        Self {
+            session,
+            scene: None,
+            recalls,
+            digests: (0..=asked.obstacles.len()).map(|_| OnceLock::new()).collect(),
+            asked,
+        }
+    }
+
     /// What is known of the stock and of an obstacle, if it is about one.
     fn known(&self, obstacle: Option<usize>) -> Recalled<'a> {
-        let known = |cache| {
+        let digest = || {
             let own = Digest::of("proof").bytes(&self.session.digests().0);
             let obstacle = obstacle.map(|number| (number, &self.asked.obstacles[number]));
             let own = match obstacle {
@@ -107,9 +133,11 @@ impl<'a> Proof<'a> {
                 }
                 None => own.number(0),
             };
-            (cache, own.key())
+            own.key()
         };
-        Recalled(self.session.cache().filter(|_| self.recalls).map(known))
+        let cache = self.session.cache().filter(|_| self.recalls);
+        let about = obstacle.map_or(0, |number| number + 1);
+        Recalled(cache.map(|cache| (cache, *self.digests[about].get_or_init(digest))))
     }
 
     /// How far something may have to be lifted out of an obstacle.
@@ -137,64 +165,56 @@ impl<'a> Proof<'a> {
 }
 
 /// What is proven, what was seen to break it but not on the lines, and what can be checked.
-///
-/// `seen`: what was found on these, and whether material was left.
-pub(super) fn statements(
-    session: Session,
-    texts: &mut ProgramTexts,
-    seen: (&[ReportedFinding], bool),
-) -> Result<All, JobError> {
+pub(super) fn statements(session: Session, texts: &mut ProgramTexts, known: Known) -> Result<All, JobError> {
     session.phase("proof");
-    let (all, is_crowded) = proven(session, texts, seen, session.cache().is_some())?;
+    let (all, is_crowded) = proven(session, texts, known, session.cache().is_some())?;
     match is_crowded && session.cache().is_some() {
         // What is found then must not depend on what was known.
-        true => Ok(proven(session, texts, seen, false)?.0),
+        true => Ok(proven(session, texts, known, false)?.0),
         false => Ok(all),
     }
 }
 
 /// The same, and whether a work nearly ran out of room. `recalls`: whether what earlier runs have proven is used.
-fn proven(
-    session: Session,
-    texts: &mut ProgramTexts,
-    (seen, is_left): (&[ReportedFinding], bool),
-    recalls: bool,
-) -> Result<(All, bool), JobError> {
-    let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
-    let proof = Proof {
-        session,
-        scene: session.request.wants_certificate().then(|| asked.scene()),
-        asked,
-        recalls,
-    };
+fn proven(session: Session, texts: &mut ProgramTexts, known: Known, recalls: bool) -> Result<(All, bool), JobError> {
+    let mut proof = Proof::new(session, recalls);
+    proof.scene = session.request.wants_certificate().then(|| proof.asked.scene());
+    let proof = proof;
     let solid_of = |number: usize, obstacle: &super::asked::Obstacle| {
         let what = match obstacle.setup {
             None => "the target",
             Some(_) => "a fixture",
         };
         let solid = obstacle.triangles.as_ref().map_err(String::clone);
-        (
-            number,
-            solid.and_then(|soup| solids::of_mesh(soup, what, proof.lift(number), &proof.known(Some(number)))),
-            obstacle.setup,
-        )
+        let distance = known.distance.filter(|_| obstacle.setup.is_none());
+        let solid = solid.and_then(|soup| {
+            let own = (distance, &proof.known(Some(number)) as &dyn Recall);
+            solids::of_mesh(soup, what, proof.lift(number), own)
+        });
+        (number, solid, obstacle.setup)
     };
     let obstacles = proof.asked.obstacles.iter().enumerate();
     let solids = || obstacles.map(|(number, own)| solid_of(number, own)).collect();
     let (solids, digest): (Vec<_>, Option<String>) = rayon::join(solids, || proof.scene.as_ref().map(Scene::digest));
-    let mut all = Vec::new();
-    for asked in &proof.asked.statements {
+    let mut of_obstacles = |asked: &Asked| {
         let own = asked.obstacles.iter().map(|number| &solids[*number]);
         let own: Vec<_> = own
             .map(|(_, solid, setup)| (solid.as_ref().map_err(String::clone), *setup))
             .collect();
-        all.push(match (asked.about, asked.measure) {
-            ("gouge", _) => gouges(&proof, texts, asked, &solids[0].1)?,
-            (_, Measured::Height) => excess::excess(&proof, asked, &solids[0].1, is_left)?,
-            _ => bodies::beside(&proof, texts, asked, &own)?,
-        });
-    }
-    all.extend(process::beside_stock(&proof, texts)?);
+        match (asked.about, asked.measure) {
+            ("gouge", _) => gouges(&proof, texts, asked, &solids[0].1),
+            (_, Measured::Height) => excess::excess(&proof, asked, &solids[0].1, known.is_left),
+            _ => bodies::beside(&proof, texts, asked, &own),
+        }
+    };
+    // One after the other: they divide the solids further. What is beside the stock needs none of these.
+    let of_obstacles = || {
+        let all = proof.asked.statements.iter().map(&mut of_obstacles);
+        all.collect::<Result<Vec<Proven>, JobError>>()
+    };
+    let (of_obstacles, beside_stock) = rayon::join(of_obstacles, || process::BesideStock::searched(&proof));
+    let mut all = of_obstacles?;
+    all.extend(beside_stock?.proven(&proof, texts));
     all.extend(machine::apart(&proof, texts)?);
     let (mut statements, mut findings) = (Vec::new(), Vec::new());
     let questions = proof.scene.iter().flat_map(|scene| &scene.questions);
@@ -213,10 +233,10 @@ fn proven(
             let same = |other: &ReportedFinding| {
                 other.kind == own.kind && (other.path, other.r#move) == (own.path, own.r#move)
             };
-            !seen.iter().any(same)
+            !known.findings.iter().any(same)
         };
         findings.extend(own.into_iter().filter(is_new));
-        statements.push(with_lines(statement, seen));
+        statements.push(with_lines(statement, known.findings));
     }
     let digest = digest.filter(|_| claims.iter().any(Option::is_some));
     let certified = digest.map(|scene| Certified { scene, claims });

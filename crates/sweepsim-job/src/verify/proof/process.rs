@@ -9,17 +9,33 @@ use crate::verify::asked::material::{about, kept_from};
 use crate::verify::texts::ProgramTexts;
 use std::collections::BTreeMap;
 use sweepsim_check::{Claim, Question};
-use sweepsim_formats::{Job, Measure, Statement, StatementState};
+use sweepsim_formats::{Measure, Statement, StatementState};
 use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, material_claim, touched_from};
 
-/// What is proven of bodies and rapids beside the stock; nothing of a stock that was guessed.
-pub(super) fn beside_stock(proof: &Proof, texts: &mut ProgramTexts) -> Result<Vec<Proven>, JobError> {
-    let solids = Solids {
-        cutters: proof.asked.beside_stock(Moving::Cutters),
-        bodies: proof.asked.beside_stock(Moving::Bodies),
-    };
-    let all = proof.asked.beside_stock.iter();
-    all.map(|movers| judged(proof, texts, &solids, *movers)).collect()
+/// What was found of bodies and rapids beside the stock; nothing of a stock that was guessed.
+pub(super) struct BesideStock {
+    solids: Solids,
+    found: Vec<(Movers, Touched)>,
+}
+
+impl BesideStock {
+    pub fn searched(proof: &Proof) -> Result<Self, JobError> {
+        let solids = Solids {
+            cutters: proof.asked.beside_stock(Moving::Cutters),
+            bodies: proof.asked.beside_stock(Moving::Bodies),
+        };
+        let all = proof.asked.beside_stock.iter();
+        let found = all.map(|movers| Ok((*movers, searched(proof, &solids, *movers)?)));
+        let found = found.collect::<Result<_, JobError>>()?;
+        Ok(Self { solids, found })
+    }
+
+    /// What is proven by it.
+    pub fn proven(&self, proof: &Proof, texts: &mut ProgramTexts) -> Vec<Proven> {
+        let all = self.found.iter();
+        all.map(|(movers, found)| said(proof, texts, *movers, found, &self.solids))
+            .collect()
+    }
 }
 
 /// Of each tool.
@@ -32,7 +48,7 @@ pub(super) fn of_tool(all: &BTreeMap<u32, Vec<Convex>>, tool: u32) -> &[Convex] 
     all.get(&tool).map_or(&[], Vec::as_slice)
 }
 
-fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Movers) -> Result<Proven, JobError> {
+fn searched(proof: &Proof, solids: &Solids, movers: Movers) -> Result<Touched, JobError> {
     let (session, job) = (proof.session, proof.session.job);
     let must_not_cut = job.paths.iter();
     let must_not_cut = must_not_cut.map(|path| |number: usize| kept_from(path, number).is_some());
@@ -46,15 +62,7 @@ fn judged(proof: &Proof, texts: &mut ProgramTexts, solids: &Solids, movers: Move
     let room = proof.asked.room(movers);
     let found = touched_from(&proof.known(None), &job.stock, &work, movers, &room, session.monitor);
     let found = found.map_err(|error| session.failure(format!("stock: {error}")))?;
-    let found = found.ok_or(JobError::Cancelled)?;
-    let about = about(movers);
-    let mut statement = Statement::new(about, room.distance.abs());
-    if room.distance > 0.0 {
-        statement.measure = Measure::Distance;
-    }
-    let mut proven = said(job, texts, statement, &found, solids);
-    proven.claims = claims(proof, solids, movers, &found);
-    Ok(proven)
+    found.ok_or(JobError::Cancelled)
 }
 
 /// An answer to the question about some movers, if it is asked.
@@ -76,7 +84,12 @@ fn claims(proof: &Proof, solids: &Solids, movers: Movers, found: &Touched) -> Ve
     asked.filter_map(claim).collect()
 }
 
-fn said(job: &Job, texts: &mut ProgramTexts, mut statement: Statement, found: &Touched, solids: &Solids) -> Proven {
+fn said(proof: &Proof, texts: &mut ProgramTexts, movers: Movers, found: &Touched, solids: &Solids) -> Proven {
+    let (job, room) = (proof.session.job, proof.asked.room(movers));
+    let mut statement = Statement::new(about(movers), room.distance.abs());
+    if room.distance > 0.0 {
+        statement.measure = Measure::Distance;
+    }
     let is_distance = statement.measure == Measure::Distance;
     let order = |witness: &Witness| if is_distance { -witness.depth } else { witness.depth };
     let worst = found.moves.iter();
@@ -115,7 +128,7 @@ fn said(job: &Job, texts: &mut ProgramTexts, mut statement: Statement, found: &T
         }
         findings.push(own);
     }
-    Proven::of(statement, findings, Vec::new())
+    Proven::of(statement, findings, claims(proof, solids, movers, found))
 }
 
 /// Tools of which it is not known what they remove.

@@ -30,7 +30,7 @@ pub(in crate::verify) fn compare(session: Session, report: &mut Report) -> Resul
     }
     session.phase("registers");
     let target = job.target.as_ref().ok_or("there is no target".to_owned());
-    let target = target.and_then(|target| asked::solids::of_mesh(&target.mesh, "the target", 0.0, &()));
+    let target = target.and_then(|target| asked::solids::of_mesh(&target.mesh, "the target", 0.0, (None, &())));
     for (registers, paths) in all {
         let about = named(registers);
         let readings = target.as_ref().map_err(String::clone).and_then(|target| {

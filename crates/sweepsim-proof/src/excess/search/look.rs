@@ -1,9 +1,9 @@
 //! The search in one patch.
 
 use super::super::found::Found;
+use super::super::patch::{Around, Halved, Patch};
 use super::super::record::{Record, key};
 use super::super::removed::{Holder, Known};
-use super::super::surface::{Around, Halved, Patch};
 use super::{FINEST, MOST_OPEN, SHARE, STEPS, Scene};
 use crate::motion::Bounds;
 use nalgebra::Vector3;
