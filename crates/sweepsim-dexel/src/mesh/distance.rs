@@ -6,8 +6,8 @@
 //! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
 //! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch, a ray tells the side.
 
-use super::tree::{TreeNode, grown};
-use super::{FaceSurfaces, Mesh, MeshError, TriangleSoup, parts};
+use super::tree::{self, TreeNode};
+use super::{FaceSurfaces, Mesh, MeshError, TriangleSoup};
 use crate::vector::{along, cross, dot, sub};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
@@ -196,24 +196,20 @@ impl DistanceTo {
                 })
             })
             .collect();
-        let parts = || {
-            let mut parts = parts::of(faces.iter().map(|f| f.corners.map(|v| mesh.vertices[v as usize])));
-            let nodes = grown(&mut parts);
-            (parts, nodes)
-        };
-        let (sides, (parts, nodes)) = rayon::join(|| pseudonormals(&mesh, &faces), parts);
+        let tree = || tree::over(faces.iter().map(|f| f.corners.map(|v| mesh.vertices[v as usize])));
+        let (sides, (leaves, nodes)) = rayon::join(|| pseudonormals(&mesh, &faces), tree);
         for (face, (at_corners, at_edges)) in faces.iter_mut().zip(sides) {
             (face.at_corners, face.at_edges) = (at_corners, at_edges);
         }
         // In the order of the leaves, so that what is looked at together lies together.
         let mut numbers = vec![u32::MAX; faces.len()];
         let mut sorted = Vec::with_capacity(faces.len());
-        let mut order = Vec::with_capacity(parts.len());
-        for part in parts {
-            let number = &mut numbers[part.face as usize];
+        let mut order = Vec::with_capacity(leaves.len());
+        for face in leaves {
+            let number = &mut numbers[face as usize];
             if *number == u32::MAX {
                 *number = sorted.len() as u32;
-                sorted.push(faces[part.face as usize].clone());
+                sorted.push(faces[face as usize].clone());
             }
             order.push(*number);
         }

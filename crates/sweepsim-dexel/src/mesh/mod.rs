@@ -7,7 +7,6 @@ mod decimate;
 mod distance;
 mod furthest;
 mod near;
-mod parts;
 mod quadric;
 mod rays;
 mod thicken;

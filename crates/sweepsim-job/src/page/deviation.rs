@@ -1,8 +1,10 @@
 //! The distance of the part's surface from the target.
 
+use crate::base::cache::Digest;
+use crate::session::Session;
 use rayon::prelude::*;
 use sweepsim::verify::Target;
-use sweepsim_dexel::Dexels;
+use sweepsim_dexel::{Dexels, End};
 use sweepsim_formats::Report;
 use sweepsim_report::{Bar, Histogram, measure};
 
@@ -10,6 +12,15 @@ use sweepsim_report::{Bar, Histogram, measure};
 const BARS: usize = 48;
 /// The histogram reaches as far as so many times the limits.
 const REACH: f64 = 6.0;
+
+/// So many lines are known together to a later run.
+const TOGETHER: usize = 512;
+
+/// Distances that were kept.
+fn read(bytes: &[u8]) -> Vec<f64> {
+    let all = bytes.as_chunks().0.iter();
+    all.map(|own| f64::from_le_bytes(*own)).collect()
+}
 
 /// The distances of all ends.
 pub(super) struct Deviated {
@@ -21,32 +32,52 @@ pub(super) struct Deviated {
 }
 
 impl Deviated {
-    pub fn new(dexels: &Dexels, target: &Target) -> Self {
+    pub fn new(session: Session, dexels: &Dexels, target: &Target) -> Self {
         let grid = *dexels.grid();
         let [dx, dy] = grid.spacing();
         let lines: Vec<usize> = dexels.iter().map(|(line, _)| line).collect();
-        let found: Vec<Vec<[(f64, f64); 2]>> = lines
-            .par_iter()
-            .map(|line| {
+        let ends = |line: usize| {
+            let pieces = dexels.at(line);
+            let ends = pieces.iter().flat_map(|piece| [piece.lower, piece.upper]);
+            ends.collect::<Vec<End>>()
+        };
+        let measured = |lines: &[usize]| -> Vec<f64> {
+            let all = lines.iter().flat_map(|line| {
                 let (i, j) = grid.place(*line);
-                let distance = |end: sweepsim_dexel::End| {
+                ends(*line).into_iter().map(move |end| {
                     let place = grid.frame().to_world([grid.x(i), grid.y(j), end.z]);
-                    let near = target.distance().nearest(place).map_or(f64::NAN, |near| near.distance);
-                    // Of a steep wall, at most a thousand cells.
-                    (near, dx * dy / f64::from(end.normal[2].abs()).max(1e-3))
-                };
-                let pieces = dexels.at(*line);
-                pieces
-                    .iter()
-                    .map(|piece| [distance(piece.lower), distance(piece.upper)])
-                    .collect()
+                    target.distance().nearest(place).map_or(f64::NAN, |near| near.distance)
+                })
+            });
+            all.collect()
+        };
+        let of = |lines: &[usize]| {
+            let Some(cache) = session.cache() else {
+                return measured(lines);
+            };
+            let (mut digest, mut count) = (Digest::of("deviation").bytes(&session.digests().1).value(&grid), 0);
+            for line in lines {
+                let heights: Vec<f64> = ends(*line).iter().map(|end| end.z).collect();
+                count += heights.len();
+                digest = digest.number(*line).number(heights.len()).floats(&heights);
+            }
+            let key = digest.key();
+            let known = cache.get(&key).map(read);
+            known.filter(|known| known.len() == count).unwrap_or_else(|| {
+                let found = measured(lines);
+                cache.put(key, found.iter().flat_map(|near| near.to_le_bytes()).collect());
+                found
             })
-            .collect();
-        let ends = found.iter().flatten().map(|ends| ends.map(|(near, _)| near as f32));
-        let areas = found.iter().flatten().flatten().map(|(near, area)| [*near, *area]);
+        };
+        let found: Vec<Vec<f64>> = lines.par_chunks(TOGETHER).map(of).collect();
+        // Of a steep wall, at most a thousand cells.
+        let area = |end: End| dx * dy / f64::from(end.normal[2].abs()).max(1e-3);
+        let areas = lines.iter().flat_map(|line| ends(*line)).map(area);
+        let near = || found.iter().flatten().copied();
+        let pairs: Vec<f32> = near().map(|near| near as f32).collect();
         Self {
-            ends: ends.collect(),
-            areas: areas.collect(),
+            ends: pairs.as_chunks().0.to_vec(),
+            areas: near().zip(areas).map(|(near, area)| [near, area]).collect(),
             limits: target.limits(),
         }
     }

@@ -40,8 +40,8 @@ pub(crate) struct PageSource<'a> {
     pub picture: Option<&'a [u8]>,
 }
 
-/// The page as HTML.
-pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
+/// The page as HTML. `meanwhile` is done when the page asks nothing more of a cache.
+pub(crate) fn html(source: &PageSource, meanwhile: impl FnOnce() + Send) -> Result<String, JobError> {
     let PageSource {
         session,
         report,
@@ -50,7 +50,7 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
     } = *source;
     let (job, task) = (session.job, session.request.task);
     let programs = Programs::new(session);
-    let deviated = || source.target.map(|target| Deviated::new(dexels, target));
+    let deviated = || source.target.map(|target| Deviated::new(session, dexels, target));
     let others = || rayon::join(|| course::made(source, &programs), || solids::solids(job, task));
     let (deviated, (made, (solids, fewer))) = rayon::join(deviated, others);
     let made = made?;
@@ -104,7 +104,8 @@ pub(crate) fn html(source: &PageSource) -> Result<String, JobError> {
         page.notes.push(note);
     }
     page.scene = Some(scene);
-    Ok(page.html())
+    let (html, ()) = rayon::join(|| page.html(), meanwhile);
+    Ok(html)
 }
 
 /// The part with what is known of its surface.

@@ -281,9 +281,7 @@ impl Outcome {
                 picture: picture.as_deref(),
             };
             session.phase("page");
-            // One computes, the other writes.
-            let (html, ()) = rayon::join(|| page::html(&source), || self.save());
-            let html = html?;
+            let html = page::html(&source, || self.save())?;
             sink.write("report.html", &mut |file| file.write_all(html.as_bytes()))?;
             let text = json(&report)?;
             sink.write("report.json", &mut |file| file.write_all(text.as_bytes()))?;

@@ -10,13 +10,17 @@ use crate::motion::Bounds;
 use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
 use nalgebra::Vector3;
 
-/// So many stretches have a digest together.
-const TOGETHER: usize = 64;
+/// So many stretches have a digest together: if one of them is another, what is near any of them is looked at again.
+const TOGETHER: usize = 16;
+/// So many of these have a box around all.
+const BOXED: usize = 16;
 
 /// Stretches of all courses, some at a time: a box around what solids sweep there, and a digest.
 pub(super) struct Blocks<'a> {
     recall: &'a dyn Recall,
     all: Vec<([f32; 6], QuestionDigest)>,
+    /// Boxes around some of these.
+    hulls: Vec<[f32; 6]>,
     /// A digest of what is asked of all patches.
     question: QuestionDigest,
 }
@@ -30,11 +34,7 @@ impl<'a> Blocks<'a> {
             question.bytes(format!("{solids:?}").as_bytes());
             let hulls = course.solids.iter().map(|own| own.boxes.hulls(TOGETHER));
             let hulls = hulls.reduce(|mut all, own| {
-                all.iter_mut().zip(own).for_each(|(a, b)| {
-                    for k in 0..3 {
-                        (a[k], a[k + 3]) = (a[k].min(b[k]), a[k + 3].max(b[k + 3]));
-                    }
-                });
+                all.iter_mut().zip(&own).for_each(|(a, b)| *a = hull(a, b));
                 all
             });
             for (first, (hull, some)) in hulls
@@ -50,8 +50,11 @@ impl<'a> Blocks<'a> {
                 all.push((hull, recall.digest(&content.0)));
             }
         }
+        let some = all.chunks(BOXED);
+        let hulls = some.map(|some| some[1..].iter().fold(some[0].0, |all, (own, _)| hull(&all, own)));
         Self {
             recall,
+            hulls: hulls.collect(),
             all,
             question: recall.digest(&question.0),
         }
@@ -63,13 +66,12 @@ impl<'a> Blocks<'a> {
             around.low.map(|c| (c as f32).next_down()),
             around.high.map(|c| (c as f32).next_up()),
         );
-        let mut near = Vec::new();
-        for (own, digest) in &self.all {
-            if (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]) {
-                near.extend_from_slice(digest);
-            }
-        }
-        self.recall.digest(&near)
+        let meets = |own: &[f32; 6]| (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]);
+        let near = self.hulls.iter().zip(self.all.chunks(BOXED));
+        let near = near.filter(|(hull, _)| meets(hull)).flat_map(|(_, some)| some);
+        let near = near.filter(|(own, _)| meets(own));
+        let digests: Vec<u8> = near.flat_map(|(_, digest)| digest).copied().collect();
+        self.recall.digest(&digests)
     }
 
     /// What is found at some patches: known, or as it is looked for; with a box around all that was asked for then.
@@ -103,6 +105,11 @@ impl<'a> Blocks<'a> {
         let is_same = *digest == self.around(&Bounds { low, high });
         is_same.then(|| Found::read_all(rest, count))?
     }
+}
+
+/// A box around two boxes.
+fn hull(a: &[f32; 6], b: &[f32; 6]) -> [f32; 6] {
+    std::array::from_fn(|k| if k < 3 { a[k].min(b[k]) } else { a[k].max(b[k]) })
 }
 
 /// A box with nothing in it.

@@ -7,6 +7,7 @@ mod free_place;
 mod machine;
 mod pairs;
 mod process;
+mod recalled;
 mod registers;
 
 pub(super) use free_place::propose;
@@ -18,7 +19,7 @@ use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;
 use crate::base::JobError;
-use crate::base::cache::{Digest, Key, RunCache};
+use crate::base::cache::Key;
 use crate::session::Session;
 use std::sync::OnceLock;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
@@ -74,37 +75,6 @@ pub(super) struct Known<'a> {
     pub distance: Option<&'a DistanceTo>,
 }
 
-/// What earlier runs have proven about something.
-struct Recalled<'a>(Option<(&'a RunCache, Key)>);
-
-impl Recalled<'_> {
-    fn entry(&self, question: &Key) -> Option<(&RunCache, Key)> {
-        let (cache, about) = self.0?;
-        Some((cache, Digest::of("answer").bytes(&about).bytes(question).key()))
-    }
-}
-
-impl Recall for Recalled<'_> {
-    fn keeps(&self) -> bool {
-        self.0.is_some()
-    }
-
-    fn digest(&self, question: &[u8]) -> Key {
-        Digest::of("question").bytes(question).key()
-    }
-
-    fn recall(&self, question: &Key) -> Option<Vec<u8>> {
-        let (cache, key) = self.entry(question)?;
-        cache.get(&key).map(<[u8]>::to_vec)
-    }
-
-    fn keep(&self, question: &Key, answer: Vec<u8>) {
-        if let Some((cache, key)) = self.entry(question) {
-            cache.put(key, answer);
-        }
-    }
-}
-
 impl<'a> Proof<'a> {
     /// Without a certificate.
     fn new(session: Session<'a>, recalls: bool) -> Self {
@@ -116,28 +86,6 @@ impl<'a> Proof<'a> {
             digests: (0..=asked.obstacles.len()).map(|_| OnceLock::new()).collect(),
             asked,
         }
-    }
-
-    /// What is known of the stock and of an obstacle, if it is about one.
-    fn known(&self, obstacle: Option<usize>) -> Recalled<'a> {
-        let digest = || {
-            let own = Digest::of("proof").bytes(&self.session.digests().0);
-            let obstacle = obstacle.map(|number| (number, &self.asked.obstacles[number]));
-            let own = match obstacle {
-                Some((number, obstacle)) => {
-                    let own = own.number(1).floats(&[self.lift(number)]);
-                    match &obstacle.triangles {
-                        Ok(soup) => own.triangles(soup),
-                        Err(reason) => own.value(reason),
-                    }
-                }
-                None => own.number(0),
-            };
-            own.key()
-        };
-        let cache = self.session.cache().filter(|_| self.recalls);
-        let about = obstacle.map_or(0, |number| number + 1);
-        Recalled(cache.map(|cache| (cache, *self.digests[about].get_or_init(digest))))
     }
 
     /// How far something may have to be lifted out of an obstacle.

@@ -1,6 +1,8 @@
 //! A tree of boxes over triangles.
 
-use super::parts::TrianglePart;
+mod parts;
+
+use parts::TrianglePart;
 
 /// Triangles of a leaf of the tree.
 const LEAF: usize = 4;
@@ -25,8 +27,15 @@ impl TreeNode {
     }
 }
 
+/// The numbers of triangles in the order of the leaves, some more than once; and the nodes, the root first.
+pub(super) fn over(triangles: impl Iterator<Item = [[f64; 3]; 3]> + Clone) -> (Vec<u32>, Vec<TreeNode>) {
+    let mut parts = parts::of(triangles);
+    let nodes = grown(&mut parts);
+    (parts.into_iter().map(|part| part.face).collect(), nodes)
+}
+
 /// The tree over some parts of triangles, which are put in the order of its leaves; the root comes first.
-pub(super) fn grown(parts: &mut [TrianglePart]) -> Vec<TreeNode> {
+fn grown(parts: &mut [TrianglePart]) -> Vec<TreeNode> {
     let mut nodes = Vec::new();
     if !parts.is_empty() {
         split(&mut nodes, parts, 0);
