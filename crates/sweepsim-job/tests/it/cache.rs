@@ -100,14 +100,17 @@ fn request(folder: &Path) -> Request {
         .judging(judging)
 }
 
-/// All outputs but for times and the page, which shows them.
+/// All outputs but for times: of the page, which shows them, what is drawn.
 fn judged(request: Request, threads: usize) -> (Outcome, Memory) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let outcome = request.plan().unwrap().run(&()).unwrap();
         let mut memory = Memory::default();
         outcome.write_to(&mut memory, &OUTPUTS, &()).unwrap();
-        memory.0.remove("report.html").unwrap();
+        let page = String::from_utf8(memory.0.remove("report.html").unwrap()).unwrap();
+        let (_, drawn) = page.split_once(r#"id="arrays">"#).unwrap();
+        let (drawn, _) = drawn.split_once("</script>").unwrap();
+        memory.0.insert("report.html: arrays".into(), drawn.into());
         let report = memory.0.remove("report.json").unwrap();
         let mut report: serde_json::Value = serde_json::from_slice(&report).unwrap();
         report.as_object_mut().unwrap().remove("seconds").unwrap();
@@ -124,7 +127,7 @@ fn same(folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
 
 fn same_as(expected: &Memory, folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
     let (outcome, found) = judged(request(folder).cache(folder.join("cache")), 3);
-    assert_eq!(found.0.len(), 6, "{:?}", found.0.keys());
+    assert_eq!(found.0.len(), 7, "{:?}", found.0.keys());
     for (name, bytes) in &expected.0 {
         assert!(found.0[name] == *bytes, "{what}: {name} differs");
     }
