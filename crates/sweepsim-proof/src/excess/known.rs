@@ -69,8 +69,9 @@ impl<'a> Blocks<'a> {
         let meets = |own: &[f32; 6]| (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]);
         let near = self.hulls.iter().zip(self.all.chunks(BOXED));
         let near = near.filter(|(hull, _)| meets(hull)).flat_map(|(_, some)| some);
-        let near = near.filter(|(own, _)| meets(own));
-        let digests: Vec<u8> = near.flat_map(|(_, digest)| digest).copied().collect();
+        let mut digests = Vec::new();
+        near.filter(|(own, _)| meets(own))
+            .for_each(|(_, digest)| digests.extend_from_slice(digest));
         self.recall.digest(&digests)
     }
 
