@@ -1,5 +1,6 @@
 //! What earlier runs have found is taken only where it would be found again.
 
+use crate::aside::made;
 use std::fs;
 use std::path::Path;
 use sweepsim_job::{JobError, Judging, Memory, Outcome, Output, Request, ShardNumber, Task, dexel::TriangleSoup};
@@ -84,9 +85,10 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-const OUTPUTS: [Output; 5] = [
+const OUTPUTS: [Output; 6] = [
     Output::Dexels,
     Output::Binary,
+    Output::Tridexels,
     Output::Mesh,
     Output::Certificate,
     Output::Report,
@@ -105,8 +107,8 @@ fn judged(request: Request, threads: usize) -> (Outcome, Memory) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let outcome = request.plan().unwrap().run(&()).unwrap();
-        let mut memory = Memory::default();
-        outcome.write_to(&mut memory, &OUTPUTS, &()).unwrap();
+        let (mut memory, cut) = made(&outcome, &OUTPUTS);
+        assert_eq!(cut, 0, "the solid is made of what was judged");
         memory.0.remove("report.html").unwrap();
         let report = memory.0.remove("report.json").unwrap();
         let mut report: serde_json::Value = serde_json::from_slice(&report).unwrap();
@@ -124,7 +126,7 @@ fn same(folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
 
 fn same_as(expected: &Memory, folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
     let (outcome, found) = judged(request(folder).cache(folder.join("cache")), 3);
-    assert_eq!(found.0.len(), 6, "{:?}", found.0.keys());
+    assert_eq!(found.0.len(), 7, "{:?}", found.0.keys());
     for (name, bytes) in &expected.0 {
         assert!(found.0[name] == *bytes, "{what}: {name} differs");
     }
