@@ -3,7 +3,9 @@
 use crate::aside::made;
 use std::fs;
 use std::path::Path;
-use sweepsim_job::{JobError, Judging, Memory, Outcome, Output, Request, ShardNumber, Task, dexel::TriangleSoup};
+use sweepsim_job::{
+    Directions, JobError, Judging, Memory, Outcome, Output, Request, ShardNumber, Task, dexel::TriangleSoup,
+};
 
 /// SplitMix64.
 struct Random(u64);
@@ -98,6 +100,7 @@ fn request(folder: &Path) -> Request {
     let mut judging = Judging::default();
     judging.moves = true;
     Request::from_file(folder.join("part.ron"))
+        .directions(Directions::Xyz)
         .outputs(OUTPUTS)
         .judging(judging)
 }
