@@ -55,7 +55,7 @@ pub(super) fn solid<'a>(
     if made.uncertified > 0 {
         let lines = words::counted(made.uncertified as u64, "dexel");
         report.notes.push(format!(
-            "{lines} along x or y could not be certified: the mesh may be wrong there"
+            "{lines} along x or y could not be certified: the surface may be wrong there"
         ));
     }
     Ok(Some(made))

@@ -225,9 +225,10 @@ impl Outcome {
         if surface || (wants(Output::Report) && solid.is_some()) {
             let made = files::mesh(solid.as_deref(), session, done, &mut report)?;
             picture = files::write_mesh(&made, session, outputs, sink, &mut report)?;
-            mesh = Some(made);
+            mesh = wants(Output::Report).then_some(made);
         }
         let uncertified = solid.as_ref().map_or(0, |own| own.uncertified);
+        let solid = solid.filter(|_| wants(Output::Report));
         let sharp = solid.as_ref().map(|own| &own.solid);
         if let (Some(target), true) = (&session.job.target, done.target.is_some() && wants(Output::Report)) {
             let found = session::phase(&mut report, "faces", || {

@@ -91,7 +91,7 @@ pub(super) fn sets(session: Session, (grids, within): &([Grid; 2], Stock)) -> Ve
 
 /// Whether the second and third of these sets are judged on just the lines along x and y that a solid is made of,
 /// together with those along z.
-pub(crate) fn make_solid(session: Session, sets: &[TilingSet]) -> bool {
+pub(crate) fn judges_solid(session: Session, sets: &[TilingSet]) -> bool {
     let judged = |set: &TilingSet| matches!(set.purpose, Purpose::Judge { .. });
     let [_, along_x, along_y, ..] = sets else { return false };
     let same = |grids: [Grid; 2]| grids == [along_x.grid, along_y.grid];

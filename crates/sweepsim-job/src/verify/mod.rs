@@ -15,7 +15,7 @@ mod work;
 
 pub(crate) use certificate::text;
 pub use certificate::{CheckedCertificate, CheckedStatement, check};
-pub(crate) use directions::make_solid;
+pub(crate) use directions::judges_solid;
 pub(crate) use proof::Certified;
 pub(crate) use work::setups;
 
@@ -240,7 +240,7 @@ impl Before {
         let along_z = looks.next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;
         let aside = match [looks.next(), looks.next()] {
-            [Some(along_x), Some(along_y)] if !done.stopped && make_solid(session, sets) => {
+            [Some(along_x), Some(along_y)] if !done.stopped && judges_solid(session, sets) => {
                 let mut aside = Aside::from([along_x, along_y]);
                 aside.drop_slivers(session.job.tolerance);
                 Some(aside)
