@@ -13,6 +13,7 @@ use sweepsim_formats::{JobPath, MoveSummary, Report, ReportedDexel};
 
 /// What is left, or was swept.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a run has one part")]
 pub(super) enum Part {
     AlongZ(Dexels),
     Solid(TriSolid),
