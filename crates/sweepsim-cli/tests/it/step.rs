@@ -121,12 +121,8 @@ fn deviations_are_told_by_face_after_three_two_one() {
     }
 }
 
-/// A program that cuts too deep into a face of a STEP target: the finding, the table and the page name the face.
-#[test]
-fn findings_of_verify_name_the_face() {
-    // The slope is x + y + z = 10; a hole in it, level at 3.5 mm, is deepest below it where x + y is least: 6 − √2.
-    let workdir = Workdir::new(
-        "Job(
+/// A hole that cuts too deep into a face of a STEP target.
+const TIP: &str = "Job(
     name: \"tip\",
     grid: Grid(min: (-1, -1), max: (11, 11), cells: (24, 24)),
     stock: Block(min: (0, 0, 0), max: (10, 10, 10)),
@@ -134,8 +130,13 @@ fn findings_of_verify_name_the_face() {
     paths: [Path(tool: 1, poses: [((3, 3, 12), (0, 0, 1)), ((3, 3, 3.5), (0, 0, 1))])],
     target: Mesh(\"tip.step\"),
     limits: Limits(gouge: 0.05, excess: 20),
-)",
-    );
+)";
+
+/// A program that cuts too deep into a face of a STEP target: the finding, the table and the page name the face.
+#[test]
+fn findings_of_verify_name_the_face() {
+    // The slope is x + y + z = 10; a hole in it, level at 3.5 mm, is deepest below it where x + y is least: 6 − √2.
+    let workdir = Workdir::new(TIP);
     fs::write(
         workdir.path("tip.step"),
         tetrahedron().replace("#53=ADVANCED_FACE(''", "#53=ADVANCED_FACE('slope'"),
@@ -163,6 +164,32 @@ fn findings_of_verify_name_the_face() {
     assert!(gouge > most - 0.3 && gouge < most + 1e-6, "{gouge} of {most}");
     let page = fs::read_to_string(workdir.path("out/report.html")).unwrap();
     assert!(page.contains("Deviations by face of the target") && page.contains("<td>slope</td>"));
+}
+
+/// Deviations by face are those of the solid, where the program was judged on its lines, whatever is written.
+#[test]
+fn deviations_by_face_do_not_depend_on_outputs() {
+    let workdir = Workdir::new(TIP);
+    fs::write(workdir.path("tip.step"), tetrahedron()).unwrap();
+    let faces = |directions: &str, outputs: &str| {
+        let options = [
+            "--no-proof",
+            "--moments",
+            "0",
+            "--directions",
+            directions,
+            "--only",
+            outputs,
+        ];
+        let output = workdir.run_job("verify", &options);
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+        let report = fs::read_to_string(workdir.path("out/report.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&report).unwrap()["faces"].clone()
+    };
+    let of_solid = faces("xyz", "report,mesh");
+    assert!(of_solid.as_array().is_some_and(|faces| faces.len() == 4), "{of_solid}");
+    assert_eq!(faces("xyz", "report"), of_solid);
+    assert_ne!(faces("z", "report"), of_solid, "those of the lines along z");
 }
 
 /// Limits by face follow the names of the file, whatever a cache knows of the same triangles.

@@ -3,27 +3,46 @@
 use crate::base::JobError;
 use crate::parts;
 use crate::request::Task;
-use crate::session::{Session, phase, reported};
-use crate::shards::Gathered;
-use crate::verify::{Certified, Verified, setups, verified};
+use crate::session::{Session, TriSolid, joined, phase, reported};
+use crate::verify::{Aside, Certified, Verified, setups, verified};
 use crate::warnings;
 use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Statistics, simulate, sweep_all};
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::{JobPath, MoveSummary, Report, ReportedDexel};
 
+/// What is left, or was swept.
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a run has one part")]
+pub(super) enum Part {
+    AlongZ(Dexels),
+    Solid(TriSolid),
+}
+
+impl Part {
+    /// Of dexels along z, and those along x and y, if they are known.
+    pub fn new(along_z: Dexels, aside: Option<Aside>) -> Result<Self, JobError> {
+        let Some(aside) = aside else {
+            return Ok(Self::AlongZ(along_z));
+        };
+        let [along_x, along_y] = aside.sets;
+        Ok(Self::Solid(TriSolid {
+            solid: joined([along_x, along_y, along_z])?,
+            uncertified: aside.uncertified,
+        }))
+    }
+}
+
 /// What was computed.
 #[derive(Debug)]
 pub(super) struct Computed {
-    pub dexels: Dexels,
+    pub part: Part,
     pub crossings: u64,
     pub repaired: usize,
     pub unresolved: Vec<ReportedDexel>,
     pub volume_removed: Option<f64>,
     /// The number of uncertified dexels along x and y, and of fixtures.
     pub uncertified: usize,
-    /// What shards found along x and y.
-    pub aside: Vec<Gathered>,
     /// The target that the result was compared with.
     pub target: Option<Target>,
     /// What each move does, if asked for.
@@ -35,34 +54,42 @@ pub(super) struct Computed {
 impl Computed {
     fn new(dexels: Dexels, statistics: &Statistics) -> Self {
         Self {
-            dexels,
+            part: Part::AlongZ(dexels),
             crossings: statistics.crossings,
             repaired: statistics.repaired,
             unresolved: reported(&statistics.unresolved),
             volume_removed: None,
             uncertified: 0,
-            aside: Vec::new(),
             target: None,
             moves: Vec::new(),
             certified: None,
         }
     }
+
+    /// The dexels along z.
+    pub fn dexels(&self) -> &Dexels {
+        match &self.part {
+            Part::AlongZ(dexels) => dexels,
+            Part::Solid(own) => &own.solid.sets()[2],
+        }
+    }
 }
 
-impl From<Verified> for Computed {
-    fn from(done: Verified) -> Self {
-        Self {
-            dexels: done.remaining,
+impl TryFrom<Verified> for Computed {
+    type Error = JobError;
+
+    fn try_from(done: Verified) -> Result<Self, JobError> {
+        Ok(Self {
+            part: Part::new(done.remaining, done.aside)?,
             crossings: done.crossings,
             repaired: 0,
             unresolved: done.unresolved,
             volume_removed: Some(done.volume_removed),
             uncertified: done.uncertified,
-            aside: Vec::new(),
             target: done.target,
             moves: done.moves,
             certified: done.certified,
-        }
+        })
     }
 }
 
@@ -86,7 +113,7 @@ pub(super) fn compute(session: Session, report: &mut Report) -> Result<Computed,
                 ..Computed::new(done.remaining, &done.statistics)
             })
         }
-        Task::Verify => Ok(verified(session, report)?.into()),
+        Task::Verify => verified(session, report)?.try_into(),
         Task::Sweep | Task::Section => {
             session.phase("sweep");
             let done = phase(report, "sweep", || {
@@ -107,11 +134,11 @@ pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     report.moves = job.moves();
     report.rapid_moves = job.paths.iter().map(JobPath::rapid_moves).sum();
     report.crossings = done.crossings;
-    report.dexels.covered = done.dexels.covered();
+    report.dexels.covered = done.dexels().covered();
     report.dexels.repaired = done.repaired;
     report.dexels.unresolved.clone_from(&done.unresolved);
     report.volume_removed = done.volume_removed;
-    report.volume = Some(done.dexels.volume());
+    report.volume = Some(done.dexels().volume());
     if let (Some(target), Some(shape)) = (&job.target, &done.target) {
         parts::name_faces(report, target, shape);
     }
@@ -121,7 +148,7 @@ pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     if request.task != Task::Sweep {
         let paths = report.paths.as_ref();
         let removed: Option<Vec<f64>> = paths.map(|paths| paths.iter().map(|path| path.removed).collect());
-        let more = warnings::after(job, &done.dexels, report.volume_removed, removed.as_deref());
+        let more = warnings::after(job, done.dexels(), report.volume_removed, removed.as_deref());
         report.warnings.extend(more);
     }
     if request.sweeping.boundary == BoundaryOperator::Paper {

@@ -1,11 +1,12 @@
 //! The outputs of a run but for its report: dexels, mesh, picture.
 
-use super::compute::Computed;
+use super::compute::{Computed, Part};
 use super::shard::along_three_axes;
 use crate::base::{JobError, Sink, words};
 use crate::request::Output;
 use crate::session::{self, Session, TriSolid, phase};
 use crate::show::{decimated, picture, share};
+use std::borrow::Cow;
 use sweepsim_dexel::{Mesh, TriDexels};
 use sweepsim_formats::{Report, write_dexels_binary, write_dexels_csv, write_ply, write_tri_dexels};
 
@@ -19,46 +20,45 @@ pub(super) fn write_dexels(
     if outputs.contains(&Output::Dexels) {
         session.phase("dexels");
         phase(report, "dexels", || {
-            sink.write("dexels.csv", &mut |file| write_dexels_csv(&done.dexels, file))
+            sink.write("dexels.csv", &mut |file| write_dexels_csv(done.dexels(), file))
         })?;
     }
     if outputs.contains(&Output::Binary) {
         session.phase("dexels");
         phase(report, "dexels", || {
-            sink.write("part.dexels", &mut |file| write_dexels_binary(&done.dexels, file))
+            sink.write("part.dexels", &mut |file| write_dexels_binary(done.dexels(), file))
         })?;
     }
     Ok(())
 }
 
-/// The result along three axes, if it is wanted, and how many of its dexels along x and y are uncertified.
-pub(super) fn solid(
+/// The result along three axes, if the job has one: as it is known, or simulated.
+pub(super) fn solid<'a>(
     session: Session,
-    done: &Computed,
+    done: &'a Computed,
     report: &mut Report,
-) -> Result<(Option<TriDexels>, usize), JobError> {
-    let heights = session::heights(session.request.task, session.job, &done.dexels);
-    let aside = along_three_axes(session, heights).unwrap_or_else(|note| {
-        report.notes.push(note);
-        false
-    });
-    if !aside {
-        return Ok((None, 0));
-    }
-    let made = match &done.aside[..] {
-        [along_x, along_y] => TriSolid {
-            uncertified: along_x.unresolved.len() + along_y.unresolved.len(),
-            solid: session::joined([along_x.dexels.clone(), along_y.dexels.clone(), done.dexels.clone()])?,
-        },
-        _ => session::solid(session, &done.dexels, report)?,
+) -> Result<Option<Cow<'a, TriSolid>>, JobError> {
+    let made = match &done.part {
+        Part::Solid(known) => Cow::Borrowed(known),
+        Part::AlongZ(dexels) => {
+            let heights = session::heights(session.request.task, session.job, dexels);
+            let aside = along_three_axes(session, heights).unwrap_or_else(|note| {
+                report.notes.push(note);
+                false
+            });
+            if !aside {
+                return Ok(None);
+            }
+            Cow::Owned(session::solid(session, dexels, report)?)
+        }
     };
     if made.uncertified > 0 {
         let lines = words::counted(made.uncertified as u64, "dexel");
         report.notes.push(format!(
-            "{lines} along x or y could not be certified: the mesh may be wrong there"
+            "{lines} along x or y could not be certified: the surface may be wrong there"
         ));
     }
-    Ok((Some(made.solid), made.uncertified))
+    Ok(Some(made))
 }
 
 pub(super) fn write_tri(
@@ -75,16 +75,16 @@ pub(super) fn write_tri(
 
 /// The surface of the result.
 pub(super) fn mesh(
-    solid: Option<&TriDexels>,
+    solid: Option<&TriSolid>,
     session: Session,
     done: &Computed,
     report: &mut Report,
 ) -> Result<Mesh, JobError> {
-    if let Some(solid) = solid {
-        return session::surface(solid, session, report);
+    if let Some(own) = solid {
+        return session::surface(&own.solid, session, report);
     }
     session.phase("mesh");
-    Ok(phase(report, "mesh", || done.dexels.surface())?)
+    Ok(phase(report, "mesh", || done.dexels().surface())?)
 }
 
 /// Writes the mesh and the picture, and returns the latter.

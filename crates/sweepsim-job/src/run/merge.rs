@@ -1,12 +1,12 @@
 //! The pieces of shards as one run.
 
-use super::compute::Computed;
+use super::compute::{Computed, Part};
 use super::shard::{check, tiling};
 use crate::base::JobError;
 use crate::request::{Request, Task};
 use crate::session::{Pieces, Plan, Session, phase};
-use crate::shards::{PieceFile, Purpose, files, gather, identity};
-use crate::verify;
+use crate::shards::{Gathered, PieceFile, Purpose, files, gather, identity};
+use crate::verify::{self, Aside};
 use std::path::{Path, PathBuf};
 use sweepsim_formats::Report;
 
@@ -85,15 +85,13 @@ pub(super) fn gathered(session: Session, pieces: Pieces, report: &mut Report) ->
     let mut sets = phase(report, "merge", || gather(pieces.files, &run, &tiling, &moves))?;
     if session.request.task == Task::Verify {
         let judged = tiling.sets.iter().take_while(|set| set.purpose != Purpose::Cut).count();
-        let aside = sets.split_off(judged);
+        let cut = cut_aside(sets.split_off(judged));
         report.notes.extend(verify::sets(session)?.1);
-        let done = verify::merged(session, &tiling.sets[..judged], sets, report)?;
-        return Ok(Computed {
-            aside,
-            ..Computed::from(done)
-        });
+        let mut done = verify::merged(session, &tiling.sets[..judged], sets, report)?;
+        done.aside = done.aside.or(cut);
+        return done.try_into();
     }
-    let aside = sets.split_off(1);
+    let aside = cut_aside(sets.split_off(1));
     let along_z = sets.remove(0);
     session.phase("stock");
     let before = phase(report, "stock", || {
@@ -102,14 +100,18 @@ pub(super) fn gathered(session: Session, pieces: Pieces, report: &mut Report) ->
     let before = before.map_err(|error| session.failure(format!("stock: {error}")))?;
     Ok(Computed {
         volume_removed: Some(before - along_z.dexels.volume()),
-        dexels: along_z.dexels,
+        part: Part::new(along_z.dexels, aside)?,
         crossings: along_z.crossings,
         repaired: along_z.repaired,
         unresolved: along_z.unresolved,
         uncertified: 0,
-        aside,
         target: None,
         moves: Vec::new(),
         certified: None,
     })
+}
+
+/// What was cut along x and y beside all else, if it was.
+fn cut_aside(sets: Vec<Gathered>) -> Option<Aside> {
+    <[Gathered; 2]>::try_from(sets).ok().map(Aside::from)
 }

@@ -1,6 +1,6 @@
 //! What a run found, and its outputs.
 
-use super::compute::{Computed, compute, describe};
+use super::compute::{Computed, Part, compute, describe};
 use super::merge::gathered;
 use super::{envelope, files};
 use crate::base::cache::RunCache;
@@ -169,7 +169,7 @@ impl Outcome {
     /// The part: what is left of the stock, or the swept volume; on the lines along z.
     #[must_use]
     pub fn part(&self) -> &Dexels {
-        &self.done.dexels
+        self.done.dexels()
     }
 
     /// What each move does, if the request asks for it or the program is short.
@@ -199,8 +199,8 @@ impl Outcome {
     /// [`JobError`]: the dexels along x and y cannot be made, or [`JobError::Cancelled`].
     pub fn mesh(&self, monitor: &dyn Monitor) -> Result<Mesh, JobError> {
         let (session, mut report) = (Session::new(&self.plan, monitor), self.report.clone());
-        let (solid, _) = files::solid(session, &self.done, &mut report)?;
-        files::mesh(solid.as_ref(), session, &self.done, &mut report)
+        let solid = files::solid(session, &self.done, &mut report)?;
+        files::mesh(solid.as_deref(), session, &self.done, &mut report)
     }
 
     /// Writes outputs to a folder, which is made if it does not exist.
@@ -230,27 +230,30 @@ impl Outcome {
         if request.judging.moves {
             sink.write("moves.csv", &mut |file| write_moves_csv(&done.moves, file))?;
         }
-        let (mut picture, mut uncertified, mut sharp) = (None, 0, None);
+        let (mut picture, mut solid, mut mesh) = (None, None, None);
         let surface = wants(Output::Mesh) || wants(Output::Picture);
-        if surface || wants(Output::Tridexels) || wants(Output::Step) {
-            let (solid, open) = files::solid(session, done, &mut report)?;
-            uncertified = open;
-            if let (Some(solid), true) = (&solid, wants(Output::Tridexels)) {
-                files::write_tri(solid, session, sink, &mut report)?;
-            }
-            if let (Some(solid), true) = (&solid, wants(Output::Step)) {
-                super::solid::write(solid, session, sink, &mut report)?;
-            }
-            if surface {
-                let mesh = files::mesh(solid.as_ref(), session, done, &mut report)?;
-                picture = files::write_mesh(&mesh, session, outputs, sink, &mut report)?;
-                sharp = solid.filter(|_| wants(Output::Report)).map(|solid| (solid, mesh));
-            }
+        // The page is not worth a simulation of its own.
+        let shown = wants(Output::Report) && matches!(done.part, Part::Solid(_));
+        if surface || shown || wants(Output::Tridexels) || wants(Output::Step) {
+            solid = files::solid(session, done, &mut report)?;
         }
+        if let (Some(own), true) = (&solid, wants(Output::Tridexels)) {
+            files::write_tri(&own.solid, session, sink, &mut report)?;
+        }
+        if let (Some(own), true) = (&solid, wants(Output::Step)) {
+            super::solid::write(&own.solid, session, sink, &mut report)?;
+        }
+        if surface || (wants(Output::Report) && solid.is_some()) {
+            let made = files::mesh(solid.as_deref(), session, done, &mut report)?;
+            picture = files::write_mesh(&made, session, outputs, sink, &mut report)?;
+            mesh = wants(Output::Report).then_some(made);
+        }
+        let uncertified = solid.as_ref().map_or(0, |own| own.uncertified);
+        let solid = solid.filter(|_| wants(Output::Report));
+        let sharp = solid.as_ref().map(|own| &own.solid);
         if let (Some(target), true) = (&session.job.target, done.target.is_some() && wants(Output::Report)) {
-            let solid = sharp.as_ref().map(|(solid, _)| solid);
             let found = session::phase(&mut report, "faces", || {
-                parts::of_part(target, &done.dexels, solid, session.job.tolerance)
+                parts::of_part(target, done.dexels(), sharp, session.job.tolerance)
             });
             report.faces = found.map_err(|error| session.failure(format!("target: {error}")))?;
         }
@@ -272,8 +275,8 @@ impl Outcome {
             let source = PageSource {
                 session,
                 report: &report,
-                dexels: &done.dexels,
-                solid: sharp.as_ref().map(|(solid, mesh)| (solid, mesh)),
+                dexels: done.dexels(),
+                solid: sharp.zip(mesh.as_ref()),
                 target: done.target.as_ref(),
                 moves: &done.moves,
                 threads: rayon::current_num_threads(),

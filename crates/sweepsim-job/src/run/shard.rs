@@ -146,7 +146,8 @@ pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
     };
     let outputs = [Output::Mesh, Output::Picture, Output::Tridexels, Output::Step];
     let surface = outputs.into_iter().any(|output| request.wants(output));
-    if surface && along_three_axes(session, session::stock_heights(job)) == Ok(true) {
+    let judged = request.task == Task::Verify && verify::judges_solid(session, &sets);
+    if surface && !judged && along_three_axes(session, session::stock_heights(job)) == Ok(true) {
         let aside = session::grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
         if let Some((grids, within)) = aside {
             let grids = grids.into_iter().zip(["along x", "along y"]);

@@ -10,6 +10,7 @@ use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels, TriDexelsError};
 use sweepsim_formats::{Job, Report};
 
 /// Dexels along three axes, and the number of uncertified ones along x and y.
+#[derive(Clone, Debug)]
 pub(crate) struct TriSolid {
     pub solid: TriDexels,
     pub uncertified: usize,

@@ -89,6 +89,15 @@ pub(super) fn sets(session: Session, (grids, within): &([Grid; 2], Stock)) -> Ve
     grids.iter().zip(["along x", "along y"]).map(set).collect()
 }
 
+/// Whether the second and third of these sets are judged on just the lines along x and y that a solid is made of,
+/// together with those along z.
+pub(crate) fn judges_solid(session: Session, sets: &[TilingSet]) -> bool {
+    let judged = |set: &TilingSet| matches!(set.purpose, Purpose::Judge { .. });
+    let [_, along_x, along_y, ..] = sets else { return false };
+    let same = |grids: [Grid; 2]| grids == [along_x.grid, along_y.grid];
+    judged(along_x) && judged(along_y) && matches!(grids_aside(session.job), Ok(Some((grids, _))) if same(grids))
+}
+
 /// Whether the part is compared with a target.
 pub(super) fn compared(session: Session) -> bool {
     session.job.target.is_some() && !session.request.judging.first

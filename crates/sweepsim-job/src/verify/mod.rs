@@ -15,6 +15,7 @@ mod work;
 
 pub(crate) use certificate::text;
 pub use certificate::{CheckedCertificate, CheckedStatement, check};
+pub(crate) use directions::judges_solid;
 pub(crate) use proof::Certified;
 pub(crate) use work::setups;
 
@@ -25,7 +26,7 @@ use crate::shards::{Gathered, Purpose, TilingSet};
 use program::{JudgedProgram, JudgedTile};
 use std::collections::BTreeMap;
 use sweepsim::verify::{AreaShare, Deviations, Judgement, Look, Target, TileDeviation, deviations_along, joined};
-use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_dexel::{Dexels, End, Grid, Interval, Line, Source};
 use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
 
 /// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
@@ -34,6 +35,8 @@ const PLOTTED: usize = 1000;
 /// What remains of the stock.
 pub(crate) struct Verified {
     pub remaining: Dexels,
+    /// The same along x and y, where the whole program was judged on the lines that a solid is made of.
+    pub aside: Option<Aside>,
     pub crossings: u64,
     pub unresolved: Vec<ReportedDexel>,
     pub volume_removed: f64,
@@ -44,6 +47,40 @@ pub(crate) struct Verified {
     pub moves: Vec<MoveSummary>,
     /// What was proven, for a checker.
     pub certified: Option<Certified>,
+}
+
+/// What remains along x and y, and the number of uncertified dexels there.
+pub(crate) struct Aside {
+    pub sets: [Dexels; 2],
+    pub uncertified: usize,
+}
+
+impl From<[Gathered; 2]> for Aside {
+    fn from(looks: [Gathered; 2]) -> Self {
+        Self {
+            uncertified: looks.iter().map(|look| look.unresolved.len()).sum(),
+            sets: looks.map(|look| look.dexels),
+        }
+    }
+}
+
+impl Aside {
+    /// Drops what is thinner than the tolerance between two cuts. Moves that are swept together leave nothing there,
+    /// but each run is swept by itself.
+    fn drop_slivers(&mut self, tolerance: f64) {
+        for set in &mut self.sets {
+            let is_thin = |[lower, upper]: [f64; 2]| upper - lower <= tolerance;
+            let is_cut = |end: End| end.source != Source::Stock;
+            let is_sliver =
+                |own: &Interval| is_thin([own.lower.z, own.upper.z]) && is_cut(own.lower) && is_cut(own.upper);
+            let thin = set.iter().filter(|(_, line)| line.heights().any(is_thin));
+            let kept = |line: Line| line.iter().filter(|own| !is_sliver(own)).collect();
+            let kept: Vec<(usize, Vec<Interval>)> = thin.map(|(number, line)| (number, kept(line))).collect();
+            for (number, line) in kept {
+                set.set(number, &line).expect("some of the intervals of a line");
+            }
+        }
+    }
 }
 
 /// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the
@@ -200,12 +237,22 @@ impl Before {
         proof::compare_registers(session, report)?;
         report.scope = Some(scope::scope(session, sets));
         axes::describe(report, session);
-        let along_z = looks.into_iter().next();
+        let mut looks = looks.into_iter();
+        let along_z = looks.next();
         let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;
+        let aside = match [looks.next(), looks.next()] {
+            [Some(along_x), Some(along_y)] if !done.stopped && judges_solid(session, sets) => {
+                let mut aside = Aside::from([along_x, along_y]);
+                aside.drop_slivers(session.job.tolerance);
+                Some(aside)
+            }
+            _ => None,
+        };
         Ok(Verified {
             volume_removed: stock.volume() - along_z.dexels.volume(),
             moves: work::describe(report, session, &done),
             remaining: along_z.dexels,
+            aside,
             crossings: along_z.crossings,
             unresolved: along_z.unresolved,
             uncertified,

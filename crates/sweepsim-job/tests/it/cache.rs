@@ -1,8 +1,11 @@
 //! What earlier runs have found is taken only where it would be found again.
 
+use crate::aside::made;
 use std::fs;
 use std::path::Path;
-use sweepsim_job::{JobError, Judging, Memory, Outcome, Output, Request, ShardNumber, Task, dexel::TriangleSoup};
+use sweepsim_job::{
+    Directions, JobError, Judging, Memory, Outcome, Output, Request, ShardNumber, Task, dexel::TriangleSoup,
+};
 
 /// SplitMix64.
 struct Random(u64);
@@ -84,9 +87,10 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-const OUTPUTS: [Output; 5] = [
+const OUTPUTS: [Output; 6] = [
     Output::Dexels,
     Output::Binary,
+    Output::Tridexels,
     Output::Mesh,
     Output::Certificate,
     Output::Report,
@@ -96,6 +100,7 @@ fn request(folder: &Path) -> Request {
     let mut judging = Judging::default();
     judging.moves = true;
     Request::from_file(folder.join("part.ron"))
+        .directions(Directions::Xyz)
         .outputs(OUTPUTS)
         .judging(judging)
 }
@@ -105,8 +110,8 @@ fn judged(request: Request, threads: usize) -> (Outcome, Memory) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let outcome = request.plan().unwrap().run(&()).unwrap();
-        let mut memory = Memory::default();
-        outcome.write_to(&mut memory, &OUTPUTS, &()).unwrap();
+        let (mut memory, cut) = made(&outcome, &OUTPUTS);
+        assert_eq!(cut, 0, "the solid is made of what was judged");
         let page = String::from_utf8(memory.0.remove("report.html").unwrap()).unwrap();
         let (_, drawn) = page.split_once(r#"id="arrays">"#).unwrap();
         let (drawn, _) = drawn.split_once("</script>").unwrap();

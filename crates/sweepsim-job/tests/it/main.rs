@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-job`, in one binary: it links once.
 
+mod aside;
 mod cache;
 mod certificates;
 mod ci;
