@@ -37,6 +37,8 @@ impl Part {
 #[derive(Debug)]
 pub(super) struct Computed {
     pub part: Part,
+    /// Whether a program was followed to its first finding only, along z.
+    pub stopped: bool,
     pub crossings: u64,
     pub repaired: usize,
     pub unresolved: Vec<ReportedDexel>,
@@ -55,6 +57,7 @@ impl Computed {
     fn new(dexels: Dexels, statistics: &Statistics) -> Self {
         Self {
             part: Part::AlongZ(dexels),
+            stopped: false,
             crossings: statistics.crossings,
             repaired: statistics.repaired,
             unresolved: reported(&statistics.unresolved),
@@ -81,6 +84,7 @@ impl TryFrom<Verified> for Computed {
     fn try_from(done: Verified) -> Result<Self, JobError> {
         Ok(Self {
             part: Part::new(done.remaining, done.aside)?,
+            stopped: done.stopped,
             crossings: done.crossings,
             repaired: 0,
             unresolved: done.unresolved,

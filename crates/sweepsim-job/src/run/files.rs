@@ -40,6 +40,11 @@ pub(super) fn solid<'a>(
 ) -> Result<Option<Cow<'a, TriSolid>>, JobError> {
     let made = match &done.part {
         Part::Solid(known) => Cow::Borrowed(known),
+        Part::AlongZ(_) if done.stopped => {
+            let why = "the program was followed to its first finding, on dexels along z only: no others are made";
+            report.notes.push(why.to_owned());
+            return Ok(None);
+        }
         Part::AlongZ(dexels) => {
             let heights = session::heights(session.request.task, session.job, dexels);
             let aside = along_three_axes(session, heights).unwrap_or_else(|note| {

@@ -101,6 +101,7 @@ pub(super) fn gathered(session: Session, pieces: Pieces, report: &mut Report) ->
     Ok(Computed {
         volume_removed: Some(before - along_z.dexels.volume()),
         part: Part::new(along_z.dexels, aside)?,
+        stopped: false,
         crossings: along_z.crossings,
         repaired: along_z.repaired,
         unresolved: along_z.unresolved,

@@ -35,6 +35,8 @@ const PLOTTED: usize = 1000;
 /// What remains of the stock.
 pub(crate) struct Verified {
     pub remaining: Dexels,
+    /// Whether the program was followed to its first finding only.
+    pub stopped: bool,
     /// The same along x and y, where the whole program was judged on the lines that a solid is made of.
     pub aside: Option<Aside>,
     pub crossings: u64,
@@ -252,6 +254,7 @@ impl Before {
             volume_removed: stock.volume() - along_z.dexels.volume(),
             moves: work::describe(report, session, &done),
             remaining: along_z.dexels,
+            stopped: done.stopped,
             aside,
             crossings: along_z.crossings,
             unresolved: along_z.unresolved,

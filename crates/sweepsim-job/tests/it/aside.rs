@@ -178,3 +178,27 @@ fn a_shard_makes_each_dexel_once() {
     assert!(aside > 500, "{aside}");
     assert_eq!(dexels(Directions::Xyz, &all), dexels(Directions::Xyz, &all[..1]));
 }
+
+/// The dexels along x and y would be those of the whole program.
+#[test]
+fn what_was_followed_to_its_first_finding_has_no_solid() {
+    let request = |first: bool| {
+        let mut judging = without_proof();
+        judging.first = first;
+        let request = Request::from_file(fixture("verify/bracket-faulty.ron")).cells([100, 60]);
+        request.directions(Directions::Xyz).judging(judging)
+    };
+    let outputs = [Output::Tridexels, Output::Mesh, Output::Step];
+    for (first, names) in [(true, &["part.ply"][..]), (false, &["part.ply", "part.step", "part.tridexels"])] {
+        let (outcome, _) = run(request(first));
+        let (memory, cut) = made(&outcome, &outputs);
+        assert!(memory.0.keys().eq(names), "{:?}", memory.0.keys());
+        assert_eq!(cut, 0);
+        let written = outcome.write_to(&mut Memory::default(), &outputs, &()).unwrap();
+        let is_said = |note: &String| note.contains("its first finding");
+        assert_eq!(written.report.notes.iter().any(is_said), first);
+        // The surface is that of the dexels: a grid of 1 mm is off by some hundredth at walls.
+        let [own, dexels] = [outcome.mesh(&()).unwrap().soup().unwrap().volume(), outcome.part().volume()];
+        assert!((own - dexels).abs() < 0.03 * dexels, "{own} beside {dexels}");
+    }
+}
