@@ -189,7 +189,10 @@ fn what_was_followed_to_its_first_finding_has_no_solid() {
         request.directions(Directions::Xyz).judging(judging)
     };
     let outputs = [Output::Tridexels, Output::Mesh, Output::Step];
-    for (first, names) in [(true, &["part.ply"][..]), (false, &["part.ply", "part.step", "part.tridexels"])] {
+    for (first, names) in [
+        (true, &["part.ply"][..]),
+        (false, &["part.ply", "part.step", "part.tridexels"]),
+    ] {
         let (outcome, _) = run(request(first));
         let (memory, cut) = made(&outcome, &outputs);
         assert!(memory.0.keys().eq(names), "{:?}", memory.0.keys());
@@ -198,7 +201,10 @@ fn what_was_followed_to_its_first_finding_has_no_solid() {
         let is_said = |note: &String| note.contains("its first finding");
         assert_eq!(written.report.notes.iter().any(is_said), first);
         // The surface is that of the dexels: a grid of 1 mm is off by some hundredth at walls.
-        let [own, dexels] = [outcome.mesh(&()).unwrap().soup().unwrap().volume(), outcome.part().volume()];
+        let [own, dexels] = [
+            outcome.mesh(&()).unwrap().soup().unwrap().volume(),
+            outcome.part().volume(),
+        ];
         assert!((own - dexels).abs() < 0.03 * dexels, "{own} beside {dexels}");
     }
 }
