@@ -132,7 +132,7 @@ fn same(folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
 
 fn same_as(expected: &Memory, folder: &Path, what: &str) -> ([usize; 2], Vec<String>, Outcome) {
     let (outcome, found) = judged(request(folder).cache(folder.join("cache")), 3);
-    assert_eq!(found.0.len(), 7, "{:?}", found.0.keys());
+    assert_eq!(found.0.len(), 8, "{:?}", found.0.keys());
     for (name, bytes) in &expected.0 {
         assert!(found.0[name] == *bytes, "{what}: {name} differs");
     }

@@ -18,7 +18,7 @@ const BOXED: usize = 16;
 /// Stretches of all courses, some at a time: a box around what solids sweep there, and a digest.
 pub(super) struct Blocks<'a> {
     recall: &'a dyn Recall,
-    all: Vec<([f32; 6], QuestionDigest)>,
+    all: Vec<([f32; 6], u128)>,
     /// Boxes around some of these.
     hulls: Vec<[f32; 6]>,
     /// A digest of what is asked of all patches.
@@ -47,7 +47,8 @@ impl<'a> Blocks<'a> {
                 content.number(number);
                 content.number(first);
                 some.iter().for_each(|stretch| stretch.write(&mut content));
-                all.push((hull, recall.digest(&content.0)));
+                let digest = recall.digest(&content.0);
+                all.push((hull, u128::from_le_bytes(std::array::from_fn(|k| digest[k]))));
             }
         }
         let some = all.chunks(BOXED);
@@ -60,8 +61,9 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// A digest of all stretches that may meet a box.
-    fn around(&self, around: &Bounds) -> QuestionDigest {
+    /// All stretches that may meet a box, as the sum of parts of their digests: these tell which stretches they are of,
+    /// so their order does not matter.
+    fn around(&self, around: &Bounds) -> u128 {
         let (low, high) = (
             around.low.map(|c| (c as f32).next_down()),
             around.high.map(|c| (c as f32).next_up()),
@@ -69,10 +71,8 @@ impl<'a> Blocks<'a> {
         let meets = |own: &[f32; 6]| (0..3).all(|k| high[k] >= own[k] && low[k] <= own[k + 3]);
         let near = self.hulls.iter().zip(self.all.chunks(BOXED));
         let near = near.filter(|(hull, _)| meets(hull)).flat_map(|(_, some)| some);
-        let mut digests = Vec::new();
-        near.filter(|(own, _)| meets(own))
-            .for_each(|(_, digest)| digests.extend_from_slice(digest));
-        self.recall.digest(&digests)
+        let near = near.filter(|(own, _)| meets(own));
+        near.fold(0, |sum, (_, digest)| sum.wrapping_add(*digest))
     }
 
     /// What is found at some patches: known, or as it is looked for; with a box around all that was asked for then.
@@ -93,7 +93,7 @@ impl<'a> Blocks<'a> {
         let mut answer = Writing::default();
         answer.floats(around.low.as_slice());
         answer.floats(around.high.as_slice());
-        answer.0.extend(self.around(&around));
+        answer.0.extend(self.around(&around).to_le_bytes());
         answer.0.extend(Found::write_all(&found));
         self.recall.keep(&key, answer.0);
         Some(found)
@@ -102,8 +102,8 @@ impl<'a> Blocks<'a> {
     fn read(&self, bytes: &[u8], count: usize) -> Option<Vec<Found>> {
         let mut from = Reading(bytes);
         let [low, high] = [from.point()?, from.point()?].map(Vector3::from);
-        let (digest, rest) = from.0.split_first_chunk::<32>()?;
-        let is_same = *digest == self.around(&Bounds { low, high });
+        let (digest, rest) = from.0.split_first_chunk()?;
+        let is_same = u128::from_le_bytes(*digest) == self.around(&Bounds { low, high });
         is_same.then(|| Found::read_all(rest, count))?
     }
 }

@@ -39,7 +39,7 @@ pub(in crate::verify) fn propose(session: Session) -> Result<(Option<Offsets>, O
         return Ok((None, Some(note.to_owned())));
     }
     session.phase("place");
-    let proof = Proof::new(session, false);
+    let proof = Proof::new(session, false, false);
     let found = free(&proof, session.request.judging.length_range)?;
     let note = match found {
         Some([low, high]) => {

@@ -76,12 +76,11 @@ pub(super) struct Known<'a> {
 }
 
 impl<'a> Proof<'a> {
-    /// Without a certificate.
-    fn new(session: Session<'a>, recalls: bool) -> Self {
+    fn new(session: Session<'a>, recorded: bool, recalls: bool) -> Self {
         let asked = AskedAll::new(session.job, session.request, is_guessed(session.plan));
         Self {
             session,
-            scene: None,
+            scene: recorded.then(|| asked.scene()),
             recalls,
             digests: (0..=asked.obstacles.len()).map(|_| OnceLock::new()).collect(),
             asked,
@@ -125,9 +124,7 @@ pub(super) fn statements(session: Session, texts: &mut ProgramTexts, known: Know
 
 /// The same, and whether a work nearly ran out of room. `recalls`: whether what earlier runs have proven is used.
 fn proven(session: Session, texts: &mut ProgramTexts, known: Known, recalls: bool) -> Result<(All, bool), JobError> {
-    let mut proof = Proof::new(session, recalls);
-    proof.scene = session.request.wants_certificate().then(|| proof.asked.scene());
-    let proof = proof;
+    let proof = Proof::new(session, session.request.wants_certificate(), recalls);
     let solid_of = |number: usize, obstacle: &super::asked::Obstacle| {
         let what = match obstacle.setup {
             None => "the target",

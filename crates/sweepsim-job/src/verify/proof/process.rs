@@ -4,10 +4,12 @@
 use super::bodies::body;
 use super::{LISTED, Proof, Proven, described, finding, place};
 use crate::base::JobError;
+use crate::session::CancelOnly;
 use crate::verify::asked::Moving;
 use crate::verify::asked::material::{about, kept_from};
 use crate::verify::texts::ProgramTexts;
 use std::collections::BTreeMap;
+use sweepsim::Monitor;
 use sweepsim_check::{Claim, Question};
 use sweepsim_formats::{Measure, Statement, StatementState};
 use sweepsim_proof::{Convex, Movers, Touched, Witness, Work, material_claim, touched_from};
@@ -60,7 +62,13 @@ fn searched(proof: &Proof, solids: &Solids, movers: Movers) -> Result<Touched, J
     });
     let work: Vec<Work> = work.collect();
     let room = proof.asked.room(movers);
-    let found = touched_from(&proof.known(None), &job.stock, &work, movers, &room, session.monitor);
+    // Beside statements about obstacles, which tell how far they are.
+    let beside = CancelOnly(session.monitor);
+    let monitor: &dyn Monitor = match proof.asked.statements.is_empty() {
+        true => session.monitor,
+        false => &beside,
+    };
+    let found = touched_from(&proof.known(None), &job.stock, &work, movers, &room, monitor);
     let found = found.map_err(|error| session.failure(format!("stock: {error}")))?;
     found.ok_or(JobError::Cancelled)
 }
