@@ -160,7 +160,7 @@ fn parts_of(surface: &Surface, sites: Range<usize>, longest: f64, recorded: bool
 }
 
 /// The trees of all patches.
-pub(super) fn trees(steps: &[Step], records: &[&Record]) -> Vec<PatchTrees> {
+pub(super) fn trees(steps: &[Step], records: &[Record]) -> Vec<PatchTrees> {
     let mut all: Vec<PatchTrees> = Vec::new();
     let mut patches = 0;
     for step in steps {

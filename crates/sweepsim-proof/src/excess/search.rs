@@ -16,6 +16,8 @@ use look::Search;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::mem::take;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{MeshError, Stock};
 use sweepsim_solve::Monitor;
@@ -152,6 +154,33 @@ pub fn highest_from(
     Ok(scene.search(limits, blocks.as_ref(), monitor))
 }
 
+/// What was found at some patches.
+#[derive(Default)]
+struct Looked {
+    /// Of all but those that are open; the number of patches is that of all.
+    settled: Found,
+    open: Vec<(usize, Found)>,
+    /// The greatest height of all.
+    height: f64,
+    records: Vec<(usize, Record)>,
+}
+
+impl Looked {
+    fn with(mut self, number: usize, mut found: Found, recorded: bool) -> Self {
+        self.height = self.height.max(found.height());
+        self.settled.patches += take(&mut found.patches);
+        if recorded {
+            self.records.push((number, take(&mut found.record)));
+        }
+        if found.open_count > 0 {
+            self.open.push((number, found));
+        } else {
+            self.settled = self.settled.join(found);
+        }
+        self
+    }
+}
+
 struct Scene<'a> {
     target: &'a Target,
     before: Before,
@@ -178,13 +207,11 @@ impl Scene<'_> {
         for _ in 0..ROUNDS {
             let spent = limits.pairs.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
-            let all = self.at_distance(distance, (known, limits.width), spent, (blocks, monitor))?;
-            let is_done = all.iter().all(|found| !found.is_left && found.open_count == 0);
+            let (found, records) = self.at_distance(distance, (known, limits.width), spent, (blocks, monitor))?;
+            let is_done = !found.is_left && found.open_count == 0;
             if is_done && self.recorded {
-                let records: Vec<&Record> = all.iter().map(|found| &found.record).collect();
                 left.trees = trees(&self.steps, &records);
             }
-            let found = all.into_iter().fold(Found::default(), Found::join);
             left.patches += found.patches;
             if let Some((place, height)) = found.highest.filter(|(_, height)| *height > known) {
                 left.highest = Some((place.into(), height));
@@ -218,22 +245,24 @@ impl Scene<'_> {
         Some(left)
     }
 
-    /// Whether anything is left at a distance from the target; and how far it reaches. `known`: so far, for certain.
+    /// Whether anything is left at a distance from the target, and how far it reaches; and the records of all patches,
+    /// if they are wanted. `known`: so far, for certain.
     fn at_distance(
         &self,
         distance: f64,
         (mut known, width): (f64, f64),
         patches: usize,
         (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
-    ) -> Option<Vec<Found>> {
-        let mut found: Vec<Found> = (0..self.patches.len()).map(|_| Found::default()).collect();
+    ) -> Option<(Found, Vec<Record>)> {
+        let mut settled = Found::default();
+        let mut records = vec![Record::default(); if self.recorded { self.patches.len() } else { 0 }];
         let mut open: Vec<usize> = (0..self.patches.len()).collect();
+        let mut still: BTreeMap<usize, Found> = BTreeMap::new();
         // Short looks everywhere, then what is left.
-        let mut left = patches;
         for look in 0..MOST_LOOKS {
             let each = match LOOKS.get(look) {
                 Some(each) => *each,
-                None => left / open.len().max(1),
+                None => patches.saturating_sub(settled.patches) / open.len().max(1),
             };
             if open.is_empty() || each < LOOKS[look.min(LOOKS.len() - 1)] {
                 break;
@@ -242,19 +271,24 @@ impl Scene<'_> {
             let (some, others): (Vec<usize>, Vec<usize>) = open.iter().partition(|number| **number % SAMPLED == 0);
             for numbers in [some, others] {
                 let again = self.look_at(&numbers, (distance, known, FINER * width), each, (blocks, monitor))?;
-                for (number, mut again) in numbers.iter().zip(again) {
-                    left = left.saturating_sub(again.patches);
-                    known = known.max(again.height());
-                    again.patches += found[*number].patches;
-                    found[*number] = again;
+                if look > 0 {
+                    numbers.iter().for_each(|number| drop(still.remove(number)));
                 }
-                if found.iter().any(|found| found.is_left) {
-                    return Some(found);
+                for looked in again {
+                    known = known.max(looked.height);
+                    settled = settled.join(looked.settled);
+                    still.extend(looked.open);
+                    for (number, record) in looked.records {
+                        records[number] = record;
+                    }
+                }
+                if settled.is_left || still.values().any(|found| found.is_left) {
+                    return Some((still.into_values().fold(settled, Found::join), records));
                 }
             }
-            open.retain(|number| found[*number].open_count > 0);
+            open = still.keys().copied().collect();
         }
-        Some(found)
+        Some((still.into_values().fold(settled, Found::join), records))
     }
 
     /// Looks at some patches, `each` of them in so many parts.
@@ -264,7 +298,7 @@ impl Scene<'_> {
         (distance, known, finer): (f64, f64, f64),
         each: usize,
         (blocks, monitor): (Option<&Blocks>, &dyn Monitor),
-    ) -> Option<impl Iterator<Item = Found>> {
+    ) -> Option<Vec<Looked>> {
         let (done, total) = (AtomicUsize::new(0), numbers.len());
         let look = |numbers: &[usize]| {
             let (mut recent, mut around) = (None, nothing());
@@ -299,10 +333,12 @@ impl Scene<'_> {
                 None => look(numbers)?.0,
             };
             monitor.advance(numbers.len() + done.fetch_add(numbers.len(), Ordering::Relaxed), total);
-            Some(found)
+            let all = numbers.iter().copied().zip(found);
+            Some(all.fold(Looked::default(), |looked, (number, found)| {
+                looked.with(number, found, self.recorded)
+            }))
         };
-        let all: Option<Vec<Vec<Found>>> = numbers.par_chunks(TOGETHER).map(some).collect();
-        Some(all?.into_iter().flatten())
+        numbers.par_chunks(TOGETHER).map(some).collect()
     }
 
     fn is_left(&self, point: &Vector3<f64>) -> bool {

@@ -1,7 +1,7 @@
 //! How near bodies come to a solid, at every time.
 
 use super::gouge::{Limits, Tree, parts, trees};
-use super::known::Asking;
+use super::known::{Asking, Part};
 use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::{Cutter, Run};
@@ -9,7 +9,6 @@ use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
 
 /// How near bodies come to a solid: an enclosure, with a witness.
@@ -71,22 +70,6 @@ pub fn closest_from(
             0 => FIRST_LOOK,
             _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
         };
-        let (done, total) = (AtomicUsize::new(0), open.len());
-        let again = |root: &Cell, number: &usize| {
-            if monitor.cancelled() {
-                return None;
-            }
-            let (path, moves) = &parts[*number];
-            let found = look(
-                (target, root),
-                &bodies[*path],
-                moves.clone(),
-                limits,
-                (pairs, known, recorded),
-            );
-            monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
-            Some(found)
-        };
         let mut question = Writing::default();
         question.bytes(b"closest");
         question.floats(&[limits.depth, limits.width, known]);
@@ -98,14 +81,11 @@ pub fn closest_from(
             deviation: limits.deviation,
             question,
         };
-        let part = |number: &usize| &parts[*number];
-        let recalled = |numbers: &[usize]| recall.keeps().then(|| asking.known(numbers.iter().map(part)))?;
-        let keep = |numbers: &[usize], found: &[Found]| {
-            if recall.keeps() {
-                asking.keep(numbers.iter().map(part), found);
-            }
-        };
-        let again: Vec<Found> = target.each(&open, (recalled, keep), again)?;
+        let own: Vec<Part> = open.iter().map(|number| parts[*number].clone()).collect();
+        let asked = (pairs, known, recorded);
+        let look =
+            |root: &Cell, (path, moves): &Part| look((target, root), &bodies[*path], moves.clone(), limits, asked);
+        let again = asking.answers(target, &own, look, monitor)?;
         for (number, again) in open.iter().zip(again) {
             let before = std::mem::replace(&mut found[*number], again);
             found[*number].take(before);

@@ -8,7 +8,6 @@ use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
 
 /// How it was proven that no point of a solid goes deeper during some moves, for a checker: see the page *Proofs
@@ -196,19 +195,10 @@ struct Asked {
 fn look_at(
     (target, recall): (&Target, &dyn Recall),
     cutters: &[Cutter],
-    (parts, limits): (&[(usize, Range<usize>)], &Limits),
+    (parts, limits): (&[Part], &Limits),
     asked: Asked,
     monitor: &dyn Monitor,
 ) -> Option<Vec<Found>> {
-    let (done, total) = (AtomicUsize::new(0), parts.len());
-    let look = |root: &Cell, (number, moves): &(usize, Range<usize>)| {
-        if monitor.cancelled() {
-            return None;
-        }
-        let found = look((target, root), &cutters[*number], moves.clone(), limits, asked);
-        monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
-        Some(found)
-    };
     let mut question = Writing::default();
     question.bytes(b"deepest");
     question.floats(&[limits.depth, asked.width, asked.known]);
@@ -220,13 +210,9 @@ fn look_at(
         deviation: limits.deviation,
         question,
     };
-    let known = |parts: &[Part]| recall.keeps().then(|| asking.known(parts.iter()))?;
-    let keep = |parts: &[Part], found: &[Found]| {
-        if recall.keeps() {
-            asking.keep(parts.iter(), found);
-        }
-    };
-    target.each(parts, (known, keep), look)
+    let look =
+        |root: &Cell, (number, moves): &Part| look((target, root), &cutters[*number], moves.clone(), limits, asked);
+    asking.answers(target, parts, look, monitor)
 }
 
 impl Enclosed {

@@ -2,7 +2,10 @@
 
 use crate::motion::Cutter;
 use crate::recall::{Answer, QuestionDigest, Recall, Writing};
+use crate::solid::{Cell, Target};
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use sweepsim_solve::Monitor;
 
 /// Who keeps answers, and what is asked of all parts of a look.
 pub(super) struct Asking<'a> {
@@ -17,7 +20,7 @@ pub(super) struct Asking<'a> {
 pub(super) type Part = (usize, Range<usize>);
 
 impl Asking<'_> {
-    fn digest<'a>(&self, parts: impl Iterator<Item = &'a Part>) -> QuestionDigest {
+    fn digest(&self, parts: &[Part]) -> QuestionDigest {
         let mut question = self.question.clone();
         let mut present = None;
         for (path, moves) in parts {
@@ -31,13 +34,32 @@ impl Asking<'_> {
         self.recall.digest(&question.0)
     }
 
-    pub fn known<'a, A: Answer>(&self, parts: impl ExactSizeIterator<Item = &'a Part>) -> Option<Vec<A>> {
-        let count = parts.len();
-        let bytes = self.recall.recall(&self.digest(parts))?;
-        A::read_all(&bytes, count)
-    }
-
-    pub fn keep<'a, A: Answer>(&self, parts: impl Iterator<Item = &'a Part>, found: &[A]) {
-        self.recall.keep(&self.digest(parts), A::write_all(found));
+    /// What is found in some parts: known, or looked for. `None` if the monitor cancelled the work.
+    pub fn answers<A: Answer + Send>(
+        &self,
+        target: &Target,
+        parts: &[Part],
+        look: impl Fn(&Cell, &Part) -> A + Sync,
+        monitor: &dyn Monitor,
+    ) -> Option<Vec<A>> {
+        let (done, total) = (AtomicUsize::new(0), parts.len());
+        let look = |root: &Cell, part: &Part| {
+            if monitor.cancelled() {
+                return None;
+            }
+            let found = look(root, part);
+            monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            Some(found)
+        };
+        let known = |parts: &[Part]| {
+            let bytes = self.recall.keeps().then(|| self.recall.recall(&self.digest(parts)))??;
+            A::read_all(&bytes, parts.len())
+        };
+        let keep = |parts: &[Part], found: &[A]| {
+            if self.recall.keeps() {
+                self.recall.keep(&self.digest(parts), A::write_all(found));
+            }
+        };
+        target.each(parts, (known, keep), look)
     }
 }
