@@ -4,6 +4,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::cmp::Reverse;
 use std::io::Write;
 
 /// The type of an array's numbers.
@@ -126,9 +127,14 @@ impl Arrays {
 
     /// All compressed, each by itself.
     pub fn packed(self) -> Packed {
-        let each: Vec<Packed> = self.0.into_par_iter().map(Array::packed).collect();
+        let mut each: Vec<(usize, Array)> = self.0.into_iter().enumerate().collect();
+        // The longest take longest: they begin first.
+        each.sort_by_key(|(_, own)| Reverse(own.bytes.len()));
+        let each = each.into_par_iter().with_max_len(1);
+        let mut each: Vec<(usize, Packed)> = each.map(|(number, own)| (number, own.packed())).collect();
+        each.sort_by_key(|(number, _)| *number);
         let mut all = Packed::default();
-        each.iter().for_each(|own| all.append(own));
+        each.iter().for_each(|(_, own)| all.append(own));
         all
     }
 }
