@@ -70,8 +70,11 @@ const STEPS: usize = 24;
 /// twice as much: roundings, and what motions deviate by, do not matter.
 #[must_use]
 pub fn margin(size: f64, cutters: &[Cutter], limits: &Limits) -> f64 {
-    let reach = cutters.iter().map(|cutter| cutter.reach).fold(0.0, f64::max);
-    limits.deviation + MARGIN * (size + reach + limits.depth)
+    limits.deviation + MARGIN * (size + reach(cutters) + limits.depth)
+}
+
+fn reach(cutters: &[Cutter]) -> f64 {
+    cutters.iter().map(|cutter| cutter.reach).fold(0.0, f64::max)
 }
 
 /// Encloses how far what is left of a stock stands beyond a target. `recorded`: with trees by which a checker can
@@ -143,6 +146,7 @@ pub fn highest_from(
             FxHashMap::default()
         },
         recorded,
+        farthest: target.size + reach(cutters),
     };
     let blocks = recall.keeps().then(|| {
         let mut question = Writing::default();
@@ -191,6 +195,8 @@ struct Scene<'a> {
     /// The numbers of triangles by their corners, for records.
     numbers: FxHashMap<[u64; 9], u32>,
     recorded: bool,
+    /// What is farther from the target is too far for a checker's margin, which has half of [`MARGIN`] for bounds.
+    farthest: f64,
 }
 
 impl Scene<'_> {
@@ -209,7 +215,7 @@ impl Scene<'_> {
             let known = left.highest.map_or(0.0, |(_, height)| height);
             let (found, records) = self.at_distance(distance, (known, limits.width), spent, (blocks, monitor))?;
             let is_done = !found.is_left && found.open_count == 0;
-            if is_done && self.recorded {
+            if is_done && self.recorded && distance <= self.farthest {
                 left.trees = trees(&self.steps, &records);
             }
             left.patches += found.patches;

@@ -99,7 +99,7 @@ impl<'a> Surface<'a> {
     }
 
     /// The triangles at a place, and which of their corners it is.
-    fn at(&self, place: u32) -> impl Iterator<Item = (usize, usize)> {
+    fn at(&self, place: u32) -> impl ExactSizeIterator<Item = (usize, usize)> {
         let [first, last] = [0, 1].map(|k| self.begins[place as usize + k] as usize);
         let split = |corner: &u32| (*corner as usize / 3, *corner as usize % 3);
         self.around[first..last].iter().map(split)
@@ -107,6 +107,20 @@ impl<'a> Surface<'a> {
 
     fn normals(&self, place: u32) -> impl Iterator<Item = Vector3<f64>> {
         self.at(place).map(|(number, _)| self.triangles[number].normal)
+    }
+
+    /// The triangles with an edge from `b` to `a`, and their corners off it; of the two, where fewer triangles meet is
+    /// looked at: there may be a centre of many.
+    fn beyond(&self, a: u32, b: u32) -> SmallVec<[(usize, u32); 2]> {
+        let (place, end, steps) = match self.at(a).len() < self.at(b).len() {
+            true => (a, b, [2, 1]),
+            false => (b, a, [1, 2]),
+        };
+        let has_edge = |(number, corner): (usize, usize)| {
+            let [other, off] = steps.map(|step| self.faces[number][(corner + step) % 3]);
+            (other == end).then_some((number, off))
+        };
+        self.at(place).filter_map(has_edge).collect()
     }
 
     fn of_triangle(&self, number: usize, each: &mut impl FnMut(Patches)) {
@@ -125,12 +139,7 @@ impl<'a> Surface<'a> {
                     normals: [triangle.normal, normal].into_iter().collect(),
                 }])
             };
-            // On the other side of the edge: triangles, with their corners off it.
-            let other = |(other, corner): (usize, usize)| {
-                let [next, off] = [1, 2].map(|step| self.faces[other][(corner + step) % 3]);
-                (next == a).then_some((other, off))
-            };
-            let others: SmallVec<[(usize, u32); 2]> = self.at(b).filter_map(other).collect();
+            let others = self.beyond(a, b);
             if others.is_empty() {
                 // Beyond a triangle without area, which was left out, is one that has a corner in common.
                 turns_out();
@@ -158,6 +167,31 @@ mod tests {
     use super::*;
     use crate::solid::Target;
     use sweepsim_dexel::TriangleSoup;
+
+    /// Two centres of many triangles: edges are looked for where few meet.
+    #[test]
+    fn triangles_beyond_edges() {
+        let turn = |k: usize| (k as f64 / 32.0 * std::f64::consts::TAU).sin_cos();
+        let rim = |k: usize| Vector3::new(turn(k).1, turn(k).0, 0.0);
+        let [top, bottom] = [1.0, -1.0].map(|z| Vector3::new(0.0, 0.0, z));
+        let corners = (0..32).flat_map(|k| [[rim(k), rim(k + 1), top], [rim(k + 1), rim(k), bottom]]);
+        let triangle = |corners: [Vector3<f64>; 3]| Triangle {
+            number: 0,
+            corners,
+            normal: (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize(),
+        };
+        let triangles: Vec<Triangle> = corners.map(triangle).collect();
+        let surface = Surface::new(&triangles);
+        let edges = |face: &[u32; 3]| [0, 1, 2].map(|k| [face[k], face[(k + 1) % 3], face[(k + 2) % 3]]);
+        for [a, b, _] in surface.faces.iter().flat_map(edges) {
+            let all = surface.faces.iter().enumerate();
+            let beyond = all.flat_map(|(number, face)| edges(face).map(|[from, to, off]| (number, [from, to], off)));
+            let beyond = beyond.filter(|(_, ends, _)| *ends == [b, a]);
+            let beyond: Vec<_> = beyond.map(|(number, _, off)| (number, off)).collect();
+            assert_eq!(beyond.len(), 1);
+            assert_eq!(surface.beyond(a, b).to_vec(), beyond);
+        }
+    }
 
     /// Whether some patch has an edge with two normals.
     fn has_edge(soup: &TriangleSoup, ends: [[f64; 3]; 2], normals: [[f64; 3]; 2]) -> bool {

@@ -61,7 +61,8 @@ pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &
     Certified { found, scene, claim }
 }
 
-/// What is claimed of heights is accepted, and less than that is not. Nothing is claimed where it is not known.
+/// What is claimed of heights is accepted, and less than that is not. Nothing is claimed where it is not known, or only
+/// that it is less than the size of target and tool.
 pub(crate) fn check_height(
     (soup, stock): (&TriangleSoup, &Stock),
     (tool, cutter): (&Tool, &Cutter),
@@ -76,7 +77,9 @@ pub(crate) fn check_height(
         Some(stock),
     );
     let claim = height_claim(&scene, &scene.questions[0], &[(0, *cutter)], left);
-    assert_eq!(claim.is_some(), left.bound.is_finite());
+    let size = soup.triangles.as_flattened().as_flattened().iter();
+    let farthest = size.fold(0.0, |size: f64, c| size.max(c.abs())) + cutter.reach;
+    assert_eq!(claim.is_some(), left.bound <= farthest);
     let Some(claim) = claim else { return };
     let own = checked(&scene, &claim);
     assert!(own.is_proven() && own.bound == left.bound, "{own:?}");

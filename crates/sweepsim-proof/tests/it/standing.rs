@@ -133,6 +133,12 @@ fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Resul
     Ok([highest > 0.3, found.bound.is_finite()])
 }
 
+/// Something is open nearer than the stock ends: all that is known is too far for a certificate.
+#[test]
+fn what_is_known_of_far_places_only_is_not_certified() {
+    check_raster((1, 0), 0.406_630_768_740_086_36, (0.4, 0.0)).expect("it holds");
+}
+
 fn rasters(cases: u32) {
     let counts = Cell::new([0; 2]);
     let mut runner = TestRunner::new(Config {
