@@ -171,7 +171,7 @@ mod tests {
     /// Two centres of many triangles: edges are looked for where few meet.
     #[test]
     fn triangles_beyond_edges() {
-        let turn = |k: usize| (k as f64 / 32.0 * std::f64::consts::TAU).sin_cos();
+        let turn = |k: usize| ((k % 32) as f64 / 32.0 * std::f64::consts::TAU).sin_cos();
         let rim = |k: usize| Vector3::new(turn(k).1, turn(k).0, 0.0);
         let [top, bottom] = [1.0, -1.0].map(|z| Vector3::new(0.0, 0.0, z));
         let corners = (0..32).flat_map(|k| [[rim(k), rim(k + 1), top], [rim(k + 1), rim(k), bottom]]);
