@@ -62,13 +62,13 @@ pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &
 }
 
 /// What is claimed of heights is accepted, and less than that is not. Nothing is claimed where it is not known, or only
-/// that it is less than the size of target and tool.
+/// that it is less than the size of target and tool. Whether something is claimed.
 pub(crate) fn check_height(
     (soup, stock): (&TriangleSoup, &Stock),
     (tool, cutter): (&Tool, &Cutter),
     limits: &Limits,
     left: &Left,
-) {
+) -> bool {
     let scene = scene(
         soup,
         (tool, cutter),
@@ -80,7 +80,9 @@ pub(crate) fn check_height(
     let size = soup.triangles.as_flattened().as_flattened().iter();
     let farthest = size.fold(0.0, |size: f64, c| size.max(c.abs())) + cutter.reach;
     assert_eq!(claim.is_some(), left.bound <= farthest);
-    let Some(claim) = claim else { return };
+    let Some(claim) = claim else {
+        return false;
+    };
     let own = checked(&scene, &claim);
     assert!(own.is_proven() && own.bound == left.bound, "{own:?}");
     if let Some((_, height)) = left.highest {
@@ -91,6 +93,7 @@ pub(crate) fn check_height(
         };
         assert!(!checked(&scene, &claim).is_proven());
     }
+    true
 }
 
 /// The same of distances.
