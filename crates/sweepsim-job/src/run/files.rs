@@ -41,7 +41,8 @@ pub(super) fn solid<'a>(
     let made = match &done.part {
         Part::Solid(known) => Cow::Borrowed(known),
         Part::AlongZ(_) if done.stopped => {
-            let why = "the program was followed to its first finding, on dexels along z only: no others are made";
+            let why =
+                "the program was followed to its first finding, along z: mesh and picture are of these dexels alone";
             report.notes.push(why.to_owned());
             return Ok(None);
         }
