@@ -28,18 +28,20 @@ pub fn counted(number: u64, one: &str) -> String {
     format!("{} {many}", count(number))
 }
 
+/// A measure that is less is none: none of its twelve decimals would be seen.
+const LEAST: f64 = 5e-13;
+
 /// A measure with five significant digits, and thousands separators.
 #[must_use]
 pub fn measure(value: f64) -> String {
     if !value.is_finite() {
         return value.to_string();
     }
+    if value.abs() < LEAST {
+        return "0".to_owned();
+    }
     let whole = value.abs().log10().floor();
-    let decimals = if value == 0.0 {
-        0
-    } else {
-        (4.0 - whole).clamp(0.0, 12.0) as usize
-    };
+    let decimals = (4.0 - whole).clamp(0.0, 12.0) as usize;
     let text = format!("{:.decimals$}", value.abs());
     let (front, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
     let sign = if value < 0.0 { "−" } else { "" };
@@ -377,7 +379,8 @@ mod tests {
         assert_eq!(measure(60847.04), "60,847");
         assert_eq!(measure(-0.012_345_67), "−0.012346");
         assert_eq!(measure(12.0), "12.000");
-        assert_eq!(measure(0.0), "0");
+        assert_eq!([0.0, -5.2e-15, 4e-13].map(measure), ["0"; 3]);
+        assert_eq!(measure(-6e-13), "−0.000000000001");
         assert_eq!(measure(f64::NAN), "NaN");
         assert_eq!(
             [12.0, 0.5, -90.25, 1234.0, 0.0].map(length),
