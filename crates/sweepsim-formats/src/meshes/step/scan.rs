@@ -148,7 +148,7 @@ impl Scan {
         let mut order: Vec<usize> = (0..self.entities.len()).collect();
         order.sort_by_key(|k| self.entities[*k].1.start);
         let mut done = 0;
-        let mut next = self.entities.last().map_or(1, |(number, _)| number + 1);
+        let mut next = self.entities.last().map_or(1, |(number, _)| number.saturating_add(1));
         for k in order {
             let (number, statement) = self.entities[k].clone();
             let keyword = self.keywords[k].clone();

@@ -6,6 +6,7 @@
 //! and there points are looked for at all of them.
 
 use super::scan::Scan;
+use nalgebra::Vector3;
 
 /// A torus as a surface of revolution, from its keyword to the semicolon, and what that refers to; `None` of a torus that
 /// does not meet itself, or is not placed as it should be. Numbers from `next` on are free.
@@ -15,7 +16,7 @@ pub(super) fn revolved(scan: &Scan, text: &[u8], torus: u64, next: &mut u64) -> 
         return None;
     };
     let (major, minor) = (number(major)?, number(minor)?);
-    if minor <= major {
+    if !(minor > major) {
         return None;
     }
     let placement = scan.attributes(text, reference(placement)?)?;
@@ -23,21 +24,21 @@ pub(super) fn revolved(scan: &Scan, text: &[u8], torus: u64, next: &mut u64) -> 
         return None;
     };
     let vector = |at: &[u8]| vector(scan.attributes(text, reference(at)?)?.get(1)?);
-    let (centre, z, x) = (vector(origin)?, vector(axis)?, vector(ahead)?);
-    let length = x.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let centre: [f64; 3] = std::array::from_fn(|k| centre[k] + major * x[k] / length);
-    let across: [f64; 3] = std::array::from_fn(|k| x[(k + 1) % 3] * z[(k + 2) % 3] - x[(k + 2) % 3] * z[(k + 1) % 3]);
-    let words = |[x, y, z]: [f64; 3]| format!("({x:.17},{y:.17},{z:.17})");
-    let [point, direction, place, circle, turn] = std::array::from_fn(|k| *next + k as u64);
-    *next += 5;
-    let [origin, axis, ahead] = [origin, axis, ahead].map(String::from_utf8_lossy);
+    let (centre, z, ahead) = (vector(origin)?, vector(axis)?.normalize(), vector(ahead)?);
+    let x = (ahead - z * z.dot(&ahead)).normalize();
+    let words = |v: Vector3<f64>| format!("({:.17},{:.17},{:.17})", v.x, v.y, v.z);
+    let first = *next;
+    *next = next.checked_add(6)?;
+    let [point, direction, other, place, circle, turn] = std::array::from_fn(|k| first + k as u64);
+    let [origin, axis] = [origin, axis].map(String::from_utf8_lossy);
     Some(format!(
         "SURFACE_OF_REVOLUTION('',#{circle},#{turn});\n\
-         #{point}=CARTESIAN_POINT('',{});\n#{direction}=DIRECTION('',{});\n\
-         #{place}=AXIS2_PLACEMENT_3D('',#{point},#{direction},{ahead});\n\
+         #{point}=CARTESIAN_POINT('',{});\n#{direction}=DIRECTION('',{});\n#{other}=DIRECTION('',{});\n\
+         #{place}=AXIS2_PLACEMENT_3D('',#{point},#{direction},#{other});\n\
          #{circle}=CIRCLE('',#{place},{minor:.17});\n#{turn}=AXIS1_PLACEMENT('',{origin},{axis});",
-        words(centre),
-        words(across),
+        words(centre + x * major),
+        words(x.cross(&z)),
+        words(x),
     ))
 }
 
@@ -50,9 +51,10 @@ fn number(attribute: &[u8]) -> Option<f64> {
     std::str::from_utf8(attribute).ok()?.trim().parse().ok()
 }
 
-fn vector(attribute: &[u8]) -> Option<[f64; 3]> {
+fn vector(attribute: &[u8]) -> Option<Vector3<f64>> {
     let words = std::str::from_utf8(attribute).ok()?.trim();
     let inside = words.strip_prefix('(')?.strip_suffix(')')?;
     let all: Option<Vec<f64>> = inside.split(',').map(|c| c.trim().parse().ok()).collect();
-    all?.try_into().ok()
+    let all: [f64; 3] = all?.try_into().ok()?;
+    Some(all.into())
 }

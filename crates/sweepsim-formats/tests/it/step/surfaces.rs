@@ -60,7 +60,8 @@ fn a_torus_that_meets_itself_is_read() {
         let upright = file.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
         let [hole, side] = [1.0, 3.0].map(|radius| file.add(&format!("CYLINDRICAL_SURFACE('',#{upright},{radius:?})")));
         let under = file.plane([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
-        let far = file.placement([0.0; 3], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]);
+        // What lies ahead need not be across the axis.
+        let far = file.placement([0.0; 3], [0.0, 0.0, 2.0], [-1.0, 0.0, 0.4]);
         let crown = file.add(&kind.replace("{}", &far.to_string()));
         let around =
             |low: usize, seam: usize, high: usize| vec![(low, true), (seam, true), (high, false), (seam, false)];
