@@ -176,7 +176,7 @@ fn what_is_left_standing_along_a_wall_is_found() {
 #[test]
 fn a_rib_that_is_milled_away_is_found() {
     let mut target = slotted([15.0, 25.0], -4.0);
-    let rib = TriangleSoup::block([30.2, 16.0, -4.0], [30.3, 24.0, 0.0]);
+    let rib = TriangleSoup::block([30.2, 18.8, -4.0], [30.3, 21.2, 0.0]);
     target.triangles.extend(rib.triangles);
     let outcome = judged(target.clone());
     let (findings, [deepest, _]) = found(&outcome);
