@@ -299,12 +299,12 @@ pub fn large(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<S
         // Turning draws fewer triangles if pictures take long; at rest all of them.
         let [x, y] = middle(browser, "#canvas")?;
         let begin = std::time::Instant::now();
-        for n in 0..6_u32 {
+        for n in 0..3_u32 {
             let x = x + 5.0 * f64::from(n);
             browser.drag(&[[x, y], [x + 5.0, y]])?;
             pixels(browser)?;
         }
-        let each = begin.elapsed().as_secs_f64() / 6.0;
+        let each = begin.elapsed().as_secs_f64() / 3.0;
         browser.wait(&format!(
             "document.getElementById('canvas').dataset.drawn === '{count}'"
         ))?;
