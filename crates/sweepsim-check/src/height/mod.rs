@@ -54,6 +54,7 @@ impl Proof for &Left<'_> {
                 Ok(patch.halves(part, pair)?.to_vec())
             }
             16 => Ok(patch.threes()),
+            17 => Ok(patch.threes_with_first()?),
             _ if self.holds(patch, kind, reader)? => Ok(Vec::new()),
             _ => Err("something may be left there"),
         })

@@ -161,19 +161,32 @@ impl Patch {
 
     /// The patches of any three normals.
     pub fn threes(&self) -> Vec<Self> {
-        let (count, mut all) = (self.normals.len(), Vec::new());
-        for i in 0..count {
-            for j in 0..i {
-                for k in 0..j {
-                    let normals = [i, j, k].map(|n| self.normals[n]).to_vec();
-                    all.push(Self {
-                        corners: self.corners.clone(),
-                        normals,
-                        is_flat: false,
-                    });
-                }
-            }
+        let pairs = |i: usize| (0..i).flat_map(move |j| (0..j).map(move |k| [i, j, k]));
+        (0..self.normals.len())
+            .flat_map(pairs)
+            .map(|three| self.of(three))
+            .collect()
+    }
+
+    /// The patches of the first normal and any two others. `None` if the normals are not all on one side of a plane.
+    ///
+    /// Else a vector in their cone leaves it on the way against the first of them, between two others.
+    pub fn threes_with_first(&self) -> Option<Vec<Self>> {
+        self.points(0.0)?;
+        let pairs = |i: usize| (1..i).map(move |j| [0, i, j]);
+        Some(
+            (1..self.normals.len())
+                .flat_map(pairs)
+                .map(|three| self.of(three))
+                .collect(),
+        )
+    }
+
+    fn of(&self, normals: [usize; 3]) -> Self {
+        Self {
+            corners: self.corners.clone(),
+            normals: normals.map(|n| self.normals[n]).to_vec(),
+            is_flat: false,
         }
-        all
     }
 }

@@ -19,7 +19,13 @@ pub fn count(number: u64) -> String {
 /// A number of things, with an `s` in the plural.
 #[must_use]
 pub fn counted(number: u64, one: &str) -> String {
-    format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" })
+    let many = match one {
+        _ if number == 1 => one.to_owned(),
+        "torus" => "tori".to_owned(),
+        _ if one.ends_with("ch") => format!("{one}es"),
+        _ => format!("{one}s"),
+    };
+    format!("{} {many}", count(number))
 }
 
 /// A measure with five significant digits, and thousands separators.
@@ -365,6 +371,9 @@ mod tests {
         assert_eq!(count(1_234_567), "1,234,567");
         assert_eq!(counted(1, "move"), "1 move");
         assert_eq!(counted(1000, "move"), "1,000 moves");
+        assert_eq!(counted(1, "torus"), "1 torus");
+        assert_eq!(counted(9, "torus"), "9 tori");
+        assert_eq!(counted(2, "patch"), "2 patches");
         assert_eq!(measure(60847.04), "60,847");
         assert_eq!(measure(-0.012_345_67), "−0.012346");
         assert_eq!(measure(12.0), "12.000");

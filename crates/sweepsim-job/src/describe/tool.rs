@@ -10,7 +10,7 @@ pub fn tool_in_words(tool: &Tool) -> String {
     let Some(profile) = tool.profile() else {
         return format!(
             "{}, {}",
-            counted(tool.patches().len() as u64, "patch").replace("patchs", "patches"),
+            counted(tool.patches().len() as u64, "patch"),
             counted(tool.edges().len() as u64, "sharp edge")
         );
     };

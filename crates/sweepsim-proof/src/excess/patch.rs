@@ -68,17 +68,16 @@ impl Patch {
                 if whole.spread() <= WIDE {
                     return SmallVec::from([whole]);
                 }
-                // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
-                let own = &whole.normals;
-                let mut all = SmallVec::new();
-                for i in 0..own.len() {
-                    for j in 0..i {
-                        for k in 0..j {
-                            all.push(patch([own[i], own[j], own[k]].into_iter().collect()));
-                        }
-                    }
+                let (own, count) = (&whole.normals, whole.normals.len());
+                let three = |own: [Vector3<f64>; 3]| patch(own.into_iter().collect());
+                let pairs = |first: usize| (first..count).flat_map(move |i| (first..i).map(move |j| (i, j)));
+                if whole.points(0.0).is_some() {
+                    // In the cone of the others seen from the first: what is beyond it is between two of them.
+                    return pairs(1).map(|(i, j)| three([own[0], own[i], own[j]])).collect();
                 }
-                all
+                // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
+                let threes = pairs(0).flat_map(|(i, j)| (0..j).map(move |k| [i, j, k]));
+                threes.map(|numbers| three(numbers.map(|n| own[n]))).collect()
             }
         }
     }

@@ -11,6 +11,7 @@
 //! | 10, 11, 12 | Parted between the corners 0 and 1, 0 and 2, or 1 and 2: at which part of the way, an `f32`. |
 //! | 13, 14, 15 | Halved between two normals. |
 //! | 16 | For any three of its normals. |
+//! | 17 | For any two of its normals and the first. |
 
 use super::patch::{Halved, Patch, Patches};
 use super::removed::Holder;
@@ -137,10 +138,10 @@ fn parts_of(surface: &Surface, sites: Range<usize>, longest: f64, recorded: bool
     let mut open = Vec::new();
     let mut add = |own: Patches| {
         step(Step::Begin);
-        match own.len() {
-            0 => step(Step::Byte(0)),
-            1 => {}
-            _ => step(Step::Byte(16)),
+        match &own[..] {
+            [] => step(Step::Byte(0)),
+            [_] => {}
+            [a, b, ..] => step(Step::Byte(if a.normals[0] == b.normals[0] { 17 } else { 16 })),
         }
         open.extend(own.into_iter().rev());
         while let Some(patch) = open.pop() {

@@ -41,6 +41,8 @@ pub struct Left {
 
 /// As many distances are tried.
 const ROUNDS: usize = 16;
+/// So many patches, for each part of the surface, are left to be looked at when it is asked whether the limit is kept.
+const RESERVE: usize = 2;
 /// What is far from the target need not be known better than this part of it.
 const SHARE: f64 = 1.0 / 64.0;
 /// The surface is divided into at least so many patches, so that all threads have work.
@@ -210,10 +212,13 @@ impl Scene<'_> {
             trees: Vec::new(),
         };
         let mut distance = limits.width;
+        // Whether the limit is kept comes before how far below it the bound is.
+        let reserve = RESERVE * self.patches.len();
         for _ in 0..ROUNDS {
-            let spent = limits.pairs.saturating_sub(left.patches);
+            let most = limits.pairs.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
-            let (found, records) = self.at_distance(distance, (known, limits.width), spent, (blocks, monitor))?;
+            let own = most.saturating_sub(if distance < limits.depth { reserve } else { 0 });
+            let (found, records) = self.at_distance(distance, (known, limits.width), own, (blocks, monitor))?;
             let is_done = !found.is_left && found.open_count == 0;
             if is_done && self.recorded && distance <= self.farthest {
                 left.trees = trees(&self.steps, &records);
@@ -231,18 +236,18 @@ impl Scene<'_> {
             if let (true, Some((place, _))) = (left.open.is_empty(), left.highest) {
                 (left.open, left.open_count) = (vec![[place; 2]], 1);
             }
-            if spent == 0 {
+            if most == 0 {
                 break;
             }
             let known = left.highest.map_or(0.0, |(_, height)| height);
             let above = known + limits.width.max(SHARE * known);
-            // Whether the limit is kept comes before how far above the bound is.
-            let undecided = known < limits.depth && distance < limits.depth;
+            let is_undecided = known < limits.depth && distance < limits.depth;
+            let has_room = left.patches + 2 * reserve < limits.pairs;
             distance = match found.is_left && above > distance {
-                true if undecided => above.min(limits.depth),
-                true => above,
-                false if undecided => limits.depth,
-                false => 2.0 * distance,
+                true if is_undecided && has_room => above.min(limits.depth),
+                true if !is_undecided => above,
+                _ if is_undecided => limits.depth,
+                _ => 2.0 * distance,
             };
         }
         if left.bound <= limits.depth || left.highest.is_some_and(|(_, height)| height > limits.depth) {

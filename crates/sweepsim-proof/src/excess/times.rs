@@ -42,11 +42,13 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
             0.5
         });
     }
-    if stretch.is_level() {
-        return of(nearest_axis(stretch, point));
-    }
+    let axis = stretch.ends[0].axis;
     // Where many are as deep, that with the axis nearest.
     let order = |time: f64| {
+        if stretch.is_level() {
+            let off = point - stretch.tip(time);
+            return off.norm_squared() - off.dot(&axis).powi(2);
+        }
         let at = stretch.at(time);
         let off = point - at.tip;
         let along = off.dot(&at.axis);
@@ -54,43 +56,30 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
         level.at([across, along]) + AXIS * across
     };
     let step = 1.0 / TIMES as f64;
-    let times = (0..=TIMES).map(|k| k as f64 * step);
-    let near = times.map(|time| (order(time), time)).min_by(|a, b| a.0.total_cmp(&b.0));
-    let near = near.map_or(0.5, |(_, time)| time);
-    of(lowest(
-        order,
-        [(near - step).max(0.0), (near + step).min(1.0)],
-        STEPS / 2,
-    ))
-}
-
-/// About when the axis of a tool that moves across it is nearest to a point: by parabolas.
-fn nearest_axis(stretch: &Stretch, point: &Vector3<f64>) -> f64 {
-    let axis = stretch.ends[0].axis;
-    let of = |time: f64| {
-        let off = point - stretch.tip(time);
-        off.norm_squared() - off.dot(&axis).powi(2)
-    };
-    let step = 1.0 / TIMES as f64;
-    let values: [f64; TIMES + 1] = std::array::from_fn(|k| of(k as f64 * step));
+    let values: [f64; TIMES + 1] = std::array::from_fn(|k| order(k as f64 * step));
     let near = (0..=TIMES)
         .min_by(|a, b| values[*a].total_cmp(&values[*b]))
         .unwrap_or(0);
-    // The least of a parabola through three values, around the middle one.
-    let least = |[a, b, c]: [f64; 3]| {
-        let bend = a - 2.0 * b + c;
-        if bend > 0.0 {
-            (0.5 * (a - c) / bend).clamp(-1.0, 1.0)
-        } else {
-            0.0
-        }
-    };
     let middle = near.clamp(1, TIMES - 1);
     let first = (middle as f64 + least([values[middle - 1], values[middle], values[middle + 1]])) * step;
-    let finer = FINER * step;
-    let first = first.clamp(finer, 1.0 - finer);
-    let second = first + finer * least([first - finer, first, first + finer].map(of));
-    second.clamp(0.0, 1.0)
+    of(around(order, first, FINER * step))
+}
+
+/// Where, in steps from the middle one, the parabola through three values is least, not beyond the others.
+fn least([a, b, c]: [f64; 3]) -> f64 {
+    let bend = a - 2.0 * b + c;
+    if bend > 0.0 {
+        (0.5 * (a - c) / bend).clamp(-1.0, 1.0)
+    } else {
+        f64::from(i8::from(a > c) - i8::from(a < c))
+    }
+}
+
+/// About the time at which something is least, near another.
+fn around(of: impl Fn(f64) -> f64, time: f64, step: f64) -> f64 {
+    let time = time.clamp(step, 1.0 - step);
+    let time = time + step * least([time - step, time, time + step].map(of));
+    time.clamp(0.0, 1.0)
 }
 
 /// About where a function is least that falls, and then rises.
@@ -141,13 +130,13 @@ pub(crate) fn narrowed<T>(
 
 /// A time near another at which the outermost of some points is far inside.
 pub(super) fn best_time(level: &Level, stretch: &Stretch, points: &[Vector3<f64>], near: f64) -> f64 {
-    let of = |time: f64| {
+    let of = &|time: f64| {
         let at = stretch.at(time);
         let levels = points.iter().map(|point| level_at(level, &at, point));
         levels.fold(f64::NEG_INFINITY, f64::max)
     };
     let step = 0.5 / TIMES as f64;
-    lowest(of, [(near - step).max(0.0), (near + step).min(1.0)], STEPS)
+    around(of, around(of, near, step), FINER * step)
 }
 
 /// Whether a point is outside of a solid all along a stretch, up to a time: levels change no faster than the point

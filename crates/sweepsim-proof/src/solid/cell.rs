@@ -92,16 +92,20 @@ impl Cell {
                 own.collect()
             }
             Near::Many(numbers) => {
-                let own = |number: &u32| clipped(*number, &triangles[*number as usize].corners);
-                numbers.iter().filter_map(own).collect()
+                let own = |number: u32| clipped(number, &triangles[number as usize].corners);
+                let is_near = |number: &u32| own(*number).is_some();
+                let numbers: Vec<u32> = numbers.iter().copied().filter(is_near).collect();
+                if numbers.len() > MOST_PIECES {
+                    return with(Near::Many(numbers));
+                }
+                numbers.into_iter().filter_map(own).collect()
             }
             Near::Inside | Near::Outside => return with(around.clone()),
         };
         let near = match pieces.len() {
             0 if depth(distance, &centre) < 0.0 => Near::Outside,
             0 => Near::Inside,
-            1..=MOST_PIECES => Near::Surface(pieces),
-            _ => Near::Many(pieces.iter().map(|piece| piece.triangle).collect()),
+            _ => Near::Surface(pieces),
         };
         with(near)
     }

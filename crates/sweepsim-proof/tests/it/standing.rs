@@ -134,13 +134,6 @@ fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Resul
     Ok([highest > 0.3, found.bound.is_finite(), certified])
 }
 
-/// Something is open nearer than the stock ends: all that is known is too far for a certificate.
-#[test]
-fn what_is_known_of_far_places_only_is_not_certified() {
-    let [_, bounded, certified] = check_raster((1, 0), 0.406_630_768_740_086_36, (0.4, 0.0)).expect("it holds");
-    assert!(bounded && !certified);
-}
-
 fn rasters(cases: u32) {
     let counts = Cell::new([0; 2]);
     let mut runner = TestRunner::new(Config {
@@ -296,4 +289,54 @@ fn what_a_ball_removes_going_down_is_certified() {
         (0.880_791_183_680_048_3, 0.138_968_712_935_068_4),
     );
     check_raster((2, 0), scene.0, scene.1).expect("what is left is enclosed");
+}
+
+/// What is left of a block over a cone of so many sides, through which a ball went over the tip; and whether that is
+/// certified.
+fn over_a_cone(sides: usize, limits: &Limits) -> (Left, bool) {
+    let rim = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * (k % sides) as f64 / sides as f64).sin_cos();
+        [10.0 * cosine, 10.0 * sine, 0.0]
+    };
+    let [tip, foot] = [8.0, 0.0].map(|z| [0.0, 0.0, z]);
+    let triangles = (0..sides).flat_map(|k| [[rim(k), rim(k + 1), tip], [rim(k + 1), rim(k), foot]]);
+    let cone = TriangleSoup {
+        triangles: triangles.collect(),
+    };
+    let stock = Stock::Block {
+        min: [-10.0, -10.0, 0.0],
+        max: [10.0, 10.0, 12.0],
+    };
+    let tool = Tool::ball(3.0, 20.0).expect("a tool");
+    let poses = [-20.0, 20.0].map(|x| Pose::new([x, 0.0, 9.0], [0.0, 0.0, 1.0]).expect("a pose"));
+    let path = Path::new(poses.to_vec()).expect("a path");
+    let solids = cover(&tool, 1e-4);
+    let cutter = Cutter::new(&solids, &path, None);
+    let target = Target::new(&cone, LIFT).expect("closed");
+    let found = highest(&target, &stock, &[cutter], limits, true, &());
+    let found = found.expect("a stock").expect("not cancelled");
+    let certified = check_height((&cone, &stock), (&tool, &cutter), limits, &found);
+    (found, certified)
+}
+
+/// Three of the normals at the tip can be chosen in 341,376 ways.
+#[test]
+fn a_tip_of_many_triangles_needs_few_patches() {
+    let (found, certified) = over_a_cone(128, &Limits::new(20.0, 2.0, 500_000));
+    // The upper corners of the block are left, above edges of the cone: it is no nearer to them than the planes there.
+    let slope = 0.8 / (std::f64::consts::PI / 128.0).cos();
+    let truth = (4.0 + 0.8 * 200.0_f64.sqrt()) / (1.0 + slope * slope).sqrt();
+    assert!(
+        certified && truth <= found.bound && found.bound < 1.3 * truth,
+        "{truth} {found:?}"
+    );
+    assert!(found.patches < 20_000, "{}", found.patches);
+}
+
+#[test]
+fn what_is_known_of_far_places_only_is_not_certified() {
+    for (width, known) in [(20.0, true), (200.0, false)] {
+        let (found, certified) = over_a_cone(8, &Limits::new(10.0 * width, width, 500_000));
+        assert_eq!((found.bound, certified), (width, known));
+    }
 }

@@ -15,7 +15,7 @@ use crate::methods::translation::{self, Ceiling, Grazed, Heading, Patches};
 use crate::methods::turning::{self, Accuracy, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
-use crate::time::path_parts::PathPart;
+use crate::time::path_parts::{Form, PathPart};
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
@@ -90,12 +90,8 @@ impl Search<'_> {
 
     /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart {
-            segment,
-            level_arc,
-            vertical_arc,
-            ..
-        } = &self.parts[at];
+        let part = &self.parts[at];
+        let segment = &part.segment;
         let mut collector = Collector {
             lines: self.lines,
             harvest,
@@ -104,29 +100,22 @@ impl Search<'_> {
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
         let collector = (&mut collector, self.ceiling);
-        if let Some(vertical_arc) = vertical_arc {
-            let arc = (
-                vertical_arc,
-                segment,
-                translation::slack(self.size.system_rounding),
-                self.height_tolerance,
-            );
-            translation::sweep_vertical_arc(outline, arc, collector, by_share, settled);
-            return;
-        }
-        let heading = match level_arc {
-            Some(level_arc) => Heading::around(level_arc, segment, self.size.system_rounding),
-            None => Heading::new(segment, self.size.system_rounding),
-        };
-        let Some(heading) = heading else { return };
-        match level_arc {
-            Some(level_arc) => {
-                translation::sweep_level_arc(outline, (&heading, level_arc), collector, by_share, settled)
+        let rounding = self.size.system_rounding;
+        match &part.form {
+            Form::VerticalArc(arc) => {
+                let arc = (arc, segment, translation::slack(rounding), self.height_tolerance);
+                translation::sweep_vertical_arc(outline, arc, collector, by_share, settled);
             }
-            None => {
-                let (part, path) = (&self.parts[at], self.path);
-                let source = |t| source(part, path, part.segment.time(t));
-                translation::sweep_straight(outline, &heading, collector, source, settled);
+            Form::LevelArc(arc) => {
+                if let Some(heading) = Heading::around(arc, segment, rounding) {
+                    translation::sweep_level_arc(outline, (&heading, arc), collector, by_share, settled);
+                }
+            }
+            Form::Joins(_) | Form::Other => {
+                if let Some(heading) = Heading::new(segment, rounding) {
+                    let source = |t| source(part, self.path, segment.time(t));
+                    translation::sweep_straight(outline, &heading, collector, source, settled);
+                }
             }
         }
     }

@@ -5,8 +5,8 @@
 //! rounding. Displacing the line by a part of the tolerance does not take it out of there; but the direction in which the tip is displaced turns the ruling about the tool. A turn by a trillionth
 //! makes no difference to that.
 
-use crate::time::joined::{Stretch, divided};
-use crate::time::path_parts::PathPart;
+use crate::time::joined::divided;
+use crate::time::path_parts::{Form, PathPart};
 use crate::tolerances::Tolerances;
 use nalgebra::Vector3;
 use std::borrow::Cow;
@@ -37,27 +37,29 @@ impl PathPart {
     /// A straight move as two, by way of a point beside its middle; `None` for other moves, and for turns whose halves would have clocks of their own.
     fn halves(&self, tolerances: &Tolerances, attempt: usize) -> Option<[Self; 2]> {
         let is_straight = self.segment.is_arc() && self.segment.time(0.25) == 0.25;
-        if !is_straight || self.level_arc.is_some() || self.vertical_arc.is_some() {
+        if !is_straight || matches!(self.form, Form::LevelArc(_) | Form::VerticalArc(_)) {
             return None;
         }
         let [from, to] = self.segment.tips().map(Vector3::from);
         let axis = self.segment.start().column(2).into_owned();
         let aside = tolerances.bend(attempt, to - from, axis)?;
-        let (at, stretches) = match self.joined.len() {
-            0 => (0.5, [vec![], vec![]]),
+        let (at, forms) = match self.joined() {
+            [] => (0.5, [self.form.clone(), self.form.clone()]),
             // Joined moves are bent where one of them ends.
-            count => divided(&self.joined, count / 2),
+            joined => {
+                let (at, joined) = divided(joined, joined.len() / 2);
+                (at, joined.map(Form::Joins))
+            }
         };
-        let half = |[from, to]: [Vector3<f64>; 2], [begin, end]: [f64; 2], joined: Vec<Stretch>| Self {
+        let half = |[from, to]: [Vector3<f64>; 2], [begin, end]: [f64; 2], form: Form| Self {
             segment: self.segment.part(begin, end).with_tips([from, to]),
             start: self.start + self.share * begin as f32,
             share: self.share * (end - begin) as f32,
-            joins: false,
-            joined,
-            ..self.clone()
+            form,
+            number: self.number,
         };
         let middle = from + (to - from) * at + aside;
-        let [first, second] = stretches;
+        let [first, second] = forms;
         Some([
             half([from, middle], [0.0, at], first),
             half([middle, to], [at, 1.0], second),

@@ -1,6 +1,6 @@
 //! Moves without rotation that go on in the direction of the one before, joined to one: each of them would be solved for the same lines again.
 
-use crate::time::path_parts::PathPart;
+use crate::time::path_parts::{Form, PathPart};
 use nalgebra::Vector3;
 
 /// A part of a path among those that are joined.
@@ -51,7 +51,10 @@ pub(crate) fn push_joined(parts: &mut Vec<PathPart>, next: PathPart, deviation: 
 }
 
 fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
-    if !(last.joins && next.joins && last.joined.len() < MOST && last.segment.turns() == next.segment.turns()) {
+    let (Form::Joins(joined), Form::Joins(_)) = (&last.form, &next.form) else {
+        return false;
+    };
+    if joined.len() >= MOST || last.segment.turns() != next.segment.turns() {
         return false;
     }
     let [[from, between], [again, to]] = [&last.segment, &next.segment].map(|s| s.tips().map(Vector3::from));
@@ -68,37 +71,41 @@ fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
         reached = along;
         goes_on && (tip - from - ahead * along).norm() <= deviation
     };
-    let before = last.joined.iter().map(|stretch| &stretch.tip);
-    // The last one of these is the tip between.
-    let fits = if last.joined.is_empty() {
-        passes(&between)
-    } else {
-        before.into_iter().all(&mut passes)
+    let mut joined = match joined.is_empty() {
+        true => vec![Stretch::of(last, between)],
+        false => joined.clone(),
     };
-    if !fits {
+    // The last one of these is the tip between.
+    if !joined.iter().all(|stretch| passes(&stretch.tip)) {
         return false;
     }
-    if last.joined.is_empty() {
-        let own = Stretch::of(last, between);
-        last.joined.push(own);
-    }
-    last.joined.push(Stretch::of(next, to));
-    for stretch in &mut last.joined {
+    joined.push(Stretch::of(next, to));
+    for stretch in &mut joined {
         stretch.until = (stretch.tip - from).dot(&ahead) / length;
     }
+    last.form = Form::Joins(joined);
     last.segment = last.segment.clone().with_tips([from, to]);
     true
 }
 
 impl PathPart {
+    /// Those that it consists of, if they are several.
+    pub(crate) fn joined(&self) -> &[Stretch] {
+        match &self.form {
+            Form::Joins(joined) => joined,
+            _ => &[],
+        }
+    }
+
     /// The move, and the fraction of it, after a share of the time of this part.
     pub fn place(&self, share: f64) -> (u32, f32) {
-        let Some(last) = self.joined.len().checked_sub(1) else {
+        let joined = self.joined();
+        let Some(last) = joined.len().checked_sub(1) else {
             return (self.number, self.start + self.share * share as f32);
         };
-        let at = self.joined[..last].partition_point(|stretch| stretch.until < share);
-        let begun = at.checked_sub(1).map_or(0.0, |before| self.joined[before].until);
-        let stretch = &self.joined[at];
+        let at = joined[..last].partition_point(|stretch| stretch.until < share);
+        let begun = at.checked_sub(1).map_or(0.0, |before| joined[before].until);
+        let stretch = &joined[at];
         let own = ((share - begun) / (stretch.until - begun)).clamp(0.0, 1.0);
         (stretch.number, stretch.start + stretch.share * own as f32)
     }
@@ -136,7 +143,7 @@ mod tests {
 
     /// The numbers of moves from `tips[k]` to `tips[k + 1]` in each joined part.
     fn counts(parts: &[PathPart]) -> Vec<usize> {
-        parts.iter().map(|part| part.joined.len().max(1)).collect()
+        parts.iter().map(|part| part.joined().len().max(1)).collect()
     }
 
     const UP: [[f64; 3]; 2] = [[0.0, 0.0, 1.0]; 2];

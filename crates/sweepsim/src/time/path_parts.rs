@@ -12,19 +12,25 @@ use sweepsim_motion::{Path, Segment};
 #[derive(Clone, Debug)]
 pub struct PathPart {
     pub segment: Segment,
-    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
-    pub(crate) level_arc: Option<LevelArc>,
-    /// The same as a circle in a plane along the dexels, for any tool of revolution.
-    pub(crate) vertical_arc: Option<VerticalArc>,
+    pub(crate) form: Form,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
     pub start: f32,
     pub share: f32,
-    /// Whether it is a whole straight move without rotation along which the tip's displacement grows, so that the next one may be [joined](super::joined) to it.
-    pub joins: bool,
-    /// Those that it consists of, if they are several.
-    pub(crate) joined: Vec<Stretch>,
+}
+
+/// What is known of a motion beyond its segment.
+#[derive(Clone, Debug)]
+pub(crate) enum Form {
+    /// A whole straight move without rotation along which the tip's displacement grows, so that the next one may be [joined](super::joined) to it; those that it
+    /// consists of, if they are several.
+    Joins(Vec<Stretch>),
+    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
+    LevelArc(LevelArc),
+    /// The same as a circle in a plane along the dexels, for any tool of revolution.
+    VerticalArc(VerticalArc),
+    Other,
 }
 
 impl PathPart {
@@ -32,13 +38,24 @@ impl PathPart {
     pub fn new(segment: Segment, number: u32, [start, share]: [f32; 2]) -> Self {
         Self {
             segment,
-            level_arc: None,
-            vertical_arc: None,
+            form: Form::Other,
             number,
             start,
             share,
-            joins: false,
-            joined: Vec::new(),
+        }
+    }
+
+    pub(crate) fn level_arc(&self) -> Option<LevelArc> {
+        match self.form {
+            Form::LevelArc(arc) => Some(arc),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn vertical_arc(&self) -> Option<VerticalArc> {
+        match self.form {
+            Form::VerticalArc(arc) => Some(arc),
+            _ => None,
         }
     }
 }
@@ -122,8 +139,9 @@ pub(crate) fn parts(
                 let mix = |n: usize| by[0] + (by[1] - by[0]) * (n as f64 * share);
                 segment.displaced([mix(n), if n == last { by[1] } else { mix(n + 1) }])
             };
+            let joins = last == 0 && arcs && grows && segment.turns().len() == 1;
             parts.push(PathPart {
-                joins: last == 0 && arcs && grows && segment.turns().len() == 1,
+                form: if joins { Form::Joins(Vec::new()) } else { Form::Other },
                 ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
             });
         }
@@ -237,14 +255,14 @@ fn carried_to(
 fn on_level_arcs(number: usize, parts: Vec<(LevelArc, Segment)>) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
     parts.into_iter().enumerate().map(move |(n, (arc, segment))| PathPart {
-        level_arc: Some(arc),
+        form: Form::LevelArc(arc),
         ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
     })
 }
 
 fn on_vertical_arc(number: usize, part: VerticalArcPart) -> PathPart {
     PathPart {
-        vertical_arc: Some(part.vertical_arc),
+        form: Form::VerticalArc(part.vertical_arc),
         ..PathPart::new(part.segment, number as u32, [part.start, part.share].map(|x| x as f32))
     }
 }
@@ -347,7 +365,7 @@ mod tests {
             before.extend(after);
             prop_assert_eq!(whole.len(), before.len());
             for (a, b) in whole.iter().zip(&before) {
-                prop_assert_eq!((a.number, a.vertical_arc.is_some()), (b.number, b.vertical_arc.is_some()));
+                prop_assert_eq!((a.number, a.vertical_arc().is_some()), (b.number, b.vertical_arc().is_some()));
                 prop_assert!(a.segment == b.segment);
             }
         }

@@ -159,14 +159,20 @@ impl Look<'_> {
     fn regions(&self) -> Vec<Extent> {
         let grid = *self.stock.grid();
         let rest = all(self.remaining);
-        let missing = all(self.target.core()).intersection(&all(self.stock), 0.0).minus(&rest);
-        let left = rest.minus(&all(self.target.allowed()));
         let webs = Webs {
             remaining: self.remaining,
             target: self.target,
         };
-        let mut regions = connected(&missing, &grid, self.target, DeviationKind::Gouge, &webs);
-        regions.extend(connected(&left, &grid, self.target, DeviationKind::Excess, &webs));
+        let missing = || {
+            let missing = all(self.target.core()).intersection(&all(self.stock), 0.0).minus(&rest);
+            connected(&missing, &grid, self.target, DeviationKind::Gouge, &webs)
+        };
+        let left = || {
+            let left = rest.minus(&all(self.target.allowed()));
+            connected(&left, &grid, self.target, DeviationKind::Excess, &webs)
+        };
+        let (mut regions, left) = rayon::join(missing, left);
+        regions.extend(left);
         regions
     }
 }

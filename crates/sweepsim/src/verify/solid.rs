@@ -112,7 +112,7 @@ impl<'a> MovingSolid<'a> {
         for (n, part) in whole.iter().enumerate() {
             // The stored times are rounded; the parts of most moves are of equal duration.
             let even = 1.0 / whole.len() as f64;
-            let [start, share] = match part.vertical_arc {
+            let [start, share] = match part.vertical_arc() {
                 Some(_) => [part.start, part.share].map(f64::from),
                 None => [n as f64 * even, even],
             };
@@ -120,16 +120,9 @@ impl<'a> MovingSolid<'a> {
             let [from, to] = local.map(|time| part.segment.at_time(time).clamp(0.0, 1.0));
             if to > from {
                 let by = [drift * out.len() as f64, drift * (out.len() + 1) as f64];
-                out.push(PathPart {
-                    segment: part.segment.part(from, to).displaced(by),
-                    level_arc: None,
-                    vertical_arc: None,
-                    number: part.number,
-                    start: (start + from * share) as f32,
-                    share: ((to - from) * share) as f32,
-                    joins: false,
-                    joined: Vec::new(),
-                });
+                let segment = part.segment.part(from, to).displaced(by);
+                let times = [start + from * share, (to - from) * share].map(|x| x as f32);
+                out.push(PathPart::new(segment, part.number, times));
             }
         }
         out

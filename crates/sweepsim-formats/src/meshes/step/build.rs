@@ -16,6 +16,8 @@ use super::fill;
 const TURN: f64 = 0.5;
 /// How often a part is meshed anew, finer, where the first mesh is not as near as asked.
 const ATTEMPTS: usize = 5;
+/// A distance that is no less than this part of what it was before it was meshed finer stays.
+const STAYS: f64 = 0.9;
 /// How many triangles are enough not to ask for more.
 const LARGE: usize = 2_000_000;
 /// The most triangles of a file.
@@ -69,7 +71,7 @@ pub(super) fn bodies(model: &Model, roots: &[Node], chord: f64) -> Result<(Vec<P
         // A distance that stays is one between the file's own edges and surfaces.
         let stays = best
             .as_ref()
-            .is_some_and(|before| found.deviation > 0.7 * before.deviation);
+            .is_some_and(|before| found.deviation > STAYS * before.deviation);
         if best
             .as_ref()
             .is_none_or(|before| (found.open, found.deviation) < (before.open, before.deviation))

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use sweepsim_nc::TextPosition;
 
+use super::tori;
 use crate::error::{FormatError, Problem};
 
 /// The most lists in one another. Real files have six.
@@ -116,12 +117,24 @@ impl Scan {
         Ok(())
     }
 
-    /// The statement of an entity.
-    pub fn place(&self, number: usize) -> Option<Range<usize>> {
+    /// Which of the entities has a number.
+    fn find(&self, number: usize) -> Option<usize> {
         let found = self
             .entities
             .binary_search_by_key(&(number as u64), |(number, _)| *number);
-        Some(self.entities[found.ok()?].1.clone())
+        found.ok()
+    }
+
+    /// The statement of an entity.
+    pub fn place(&self, number: usize) -> Option<Range<usize>> {
+        Some(self.entities[self.find(number)?].1.clone())
+    }
+
+    /// The attributes of an entity.
+    pub fn attributes<'a>(&self, text: &'a [u8], number: usize) -> Option<Vec<&'a [u8]>> {
+        let found = self.find(number)?;
+        let range = self.keywords[found].end..self.entities[found].1.end;
+        Some(attributes(text, range).into_iter().map(|range| &text[range]).collect())
     }
 
     /// The text for the library. Each face's name becomes its number, as `#12`, which the library hands through with
@@ -135,6 +148,7 @@ impl Scan {
         let mut order: Vec<usize> = (0..self.entities.len()).collect();
         order.sort_by_key(|k| self.entities[*k].1.start);
         let mut done = 0;
+        let mut next = self.entities.last().map_or(1, |(number, _)| number + 1);
         for k in order {
             let (number, statement) = self.entities[k].clone();
             let keyword = self.keywords[k].clone();
@@ -169,6 +183,13 @@ impl Scan {
                     }
                     done = statement.end;
                 }
+                b"TOROIDAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" => {
+                    if let Some(revolved) = tori::revolved(self, text, number, &mut next) {
+                        out.extend_from_slice(&text[done..keyword.start]);
+                        out.extend_from_slice(revolved.as_bytes());
+                        done = statement.end;
+                    }
+                }
                 b"PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS" => {
                     out.extend_from_slice(&text[done..keyword.start]);
                     out.extend_from_slice(b"PRODUCT_DEFINITION");
@@ -183,15 +204,8 @@ impl Scan {
 
     /// The name of a face in the file, if it has one.
     pub fn face_name(&self, text: &[u8], number: usize) -> Option<String> {
-        let statement = self.place(number)?;
-        let found = self
-            .entities
-            .binary_search_by_key(&(number as u64), |(number, _)| *number)
-            .ok()?;
-        let name = attributes(text, self.keywords[found].end..statement.end)
-            .into_iter()
-            .next()?;
-        let name = strings(&text[name]).into_iter().next()?;
+        let name = *self.attributes(text, number)?.first()?;
+        let name = strings(name).into_iter().next()?;
         (!matches!(name.as_str(), "" | "NONE")).then_some(name)
     }
 }

@@ -39,6 +39,67 @@ fn a_coarse_bar_is_as_round_as_its_file_says() {
     assert!((exact.nearest([1.0, 2.5, 6.5]).unwrap().distance - 1.5).abs() < 1e-12);
 }
 
+/// A washer whose top is crowned: part of a torus with a minor radius of 10 and a major one of 2, on the far side of its
+/// axis.
+#[test]
+fn a_torus_that_meets_itself_is_read() {
+    let height = |r: f64| (100.0 - (r + 2.0).powi(2)).sqrt();
+    for kind in [
+        "TOROIDAL_SURFACE('',#{},2.0,10.0)",
+        "DEGENERATE_TOROIDAL_SURFACE('',#{},2.0,1.0E1,.F.)",
+    ] {
+        let mut file = Writer::new(false);
+        let places = [[1.0, 5.0], [3.0, 5.0], [1.0, height(1.0)], [3.0, height(3.0)]].map(|[r, z]| [r, 0.0, z]);
+        let vertices = places.map(|place| file.vertex(place));
+        let circles: [usize; 4] =
+            std::array::from_fn(|k| file.circle(vertices[k], [0.0, 0.0, places[k][2]], places[k][0]));
+        let [inner, outer] = [0, 1].map(|k| file.line([vertices[k], vertices[k + 2]], [places[k], places[k + 2]]));
+        let placement = file.placement([-2.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]);
+        let arc = file.add(&format!("CIRCLE('',#{placement},10.0)"));
+        let arc = file.add(&format!("EDGE_CURVE('',#{},#{},#{arc},.T.)", vertices[3], vertices[2]));
+        let upright = file.placement([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
+        let [hole, side] = [1.0, 3.0].map(|radius| file.add(&format!("CYLINDRICAL_SURFACE('',#{upright},{radius:?})")));
+        let under = file.plane([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
+        let far = file.placement([0.0; 3], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]);
+        let crown = file.add(&kind.replace("{}", &far.to_string()));
+        let around =
+            |low: usize, seam: usize, high: usize| vec![(low, true), (seam, true), (high, false), (seam, false)];
+        // The normals of the torus on its far side look down, those of a cylinder outwards.
+        let into = vec![(circles[2], true), (inner, false), (circles[0], false), (inner, true)];
+        let (into, over) = (file.face("", hole, &[into]), around(circles[3], arc, circles[2]));
+        let into = file.reversed(into);
+        let over = file.face("", crown, &[over]);
+        let faces = [
+            into,
+            file.reversed(over),
+            file.face("", side, &[around(circles[1], outer, circles[3])]),
+            file.face("", under, &[vec![(circles[1], false)], vec![(circles[0], true)]]),
+        ];
+        let solid = file.solid("washer", &faces);
+        file.product("part", &[solid]);
+        let part = parse_step(file.text().as_bytes(), 0.01).unwrap();
+        let soup = part.mesh.soup().unwrap();
+        // By rings, and the edges of the profile.
+        let ring = |k: u32| {
+            let r = 1.0 + 2e-4 * (f64::from(k) + 0.5);
+            2e-4 * std::f64::consts::TAU * r * (height(r) - 5.0)
+        };
+        let truth: f64 = (0..10_000).map(ring).sum();
+        let own = part.bodies[0].volume.unwrap();
+        assert!((own - truth).abs() < 1e-5 * truth, "{own} {truth}");
+        assert!((soup.volume() - truth).abs() < 0.01 * 80.0, "{} {truth}", soup.volume());
+        assert!(part.deviation <= 0.01, "{}", part.deviation);
+        let mut seen = 0;
+        for (corners, face) in soup.triangles.iter().zip(&part.face_of) {
+            if part.faces[*face as usize].kind == "revolved surface" {
+                assert!(corners.iter().all(|[x, y, z]| (z - height(x.hypot(*y))).abs() < 1e-9));
+                seen += 1;
+            }
+        }
+        assert!(seen > 50, "{seen}");
+    }
+}
+
 /// Faces of placed parts are where the part is: all six planes of a block in an assembly, in inches.
 #[test]
 fn surfaces_are_placed_with_their_bodies() {

@@ -102,6 +102,13 @@ impl Writer {
         ))
     }
 
+    /// Turns a face against its surface, which is the last that was added.
+    pub fn reversed(&mut self, face: usize) -> usize {
+        let end = self.data.rfind(".T.);").unwrap();
+        self.data.replace_range(end..end + 3, ".F.");
+        face
+    }
+
     pub fn plane(&mut self, origin: [f64; 3], normal: [f64; 3], x: [f64; 3]) -> usize {
         let placement = self.placement(origin, normal, x);
         self.add(&format!("PLANE('',#{placement})"))

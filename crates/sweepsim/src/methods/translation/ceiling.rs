@@ -32,13 +32,13 @@ impl Ceiling {
     /// The lowest one for these moves, if there is any. `top`: the highest material.
     pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
         let forwards = |part: &PathPart| {
-            part.vertical_arc
+            part.vertical_arc()
                 .is_none_or(|vertical_arc| vertical_arc.goes_forwards())
         };
         if !outline.complete || !parts.iter().all(|part| stands(part) && forwards(part)) {
             return None;
         }
-        let own = |part: &PathPart| match part.vertical_arc {
+        let own = |part: &PathPart| match part.vertical_arc() {
             Some(vertical_arc) => vertical_arc.heights(),
             None => part.segment.tips().map(|tip| tip[2]),
         };
@@ -67,11 +67,11 @@ impl Ceiling {
                 == 1;
             let rate = (piece.to[0] - piece.from[0]) / (to - from);
             // Along an arc the disc has to be always the same.
-            let level_arc = parts.iter().filter(|part| part.level_arc.is_some());
+            let level_arc = parts.iter().filter(|part| part.level_arc().is_some());
             let rises = level_arc.map(|part| part.segment.travel()[2]);
             let vertical = parts
                 .iter()
-                .filter_map(|part| part.vertical_arc.map(|arc| arc.heights()));
+                .filter_map(|part| part.vertical_arc().map(|arc| arc.heights()));
             let mut rises = rises.chain(vertical.map(|[low, high]| high - low));
             let steady = rises.all(|rise| (rate * rise).abs() < STEADY * reach);
             if alone && steady && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
@@ -87,7 +87,7 @@ impl Ceiling {
 
     /// The disc along an arc.
     fn around(&self, part: &PathPart, slack: f64) -> Option<Around> {
-        let level_arc = part.level_arc?;
+        let level_arc = part.level_arc()?;
         let [a, b] = part.segment.tips().map(|tip| self.disc(tip).radius);
         Some(Around {
             arc: level_arc,
@@ -246,7 +246,7 @@ pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], system_rounding: f64,
     let around: Vec<Around> = parts.iter().filter_map(|part| ceiling.around(part, slack)).collect();
     let moves: Vec<Capsule> = parts
         .iter()
-        .filter(|part| part.level_arc.is_none())
+        .filter(|part| part.level_arc().is_none())
         .map(|part| {
             let [a, b] = tips(part);
             Capsule::new(a, b)

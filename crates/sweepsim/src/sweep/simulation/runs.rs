@@ -8,7 +8,7 @@ use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
 use crate::time::joined::push_joined;
-use crate::time::path_parts::PathPart;
+use crate::time::path_parts::{Form, PathPart};
 use crate::time::swept_box::swept_box;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -95,7 +95,7 @@ impl<'a> Runs<'a> {
         let part = &self.plan.parts[at];
         let ends = || part.segment.tips().map(|tip| tip[2]);
         let [from, to] = part
-            .vertical_arc
+            .vertical_arc()
             .map_or_else(ends, |vertical_arc| vertical_arc.heights());
         let whole = Some((part.clone(), [false; 2]));
         if !stands(part) || (from <= self.over && to <= self.over) {
@@ -104,7 +104,7 @@ impl<'a> Runs<'a> {
         if from > self.over && to > self.over {
             return None;
         }
-        if part.level_arc.is_some() || part.vertical_arc.is_some() {
+        if matches!(part.form, Form::LevelArc(_) | Form::VerticalArc(_)) {
             return whole;
         }
         let t = (self.over - from) / (to - from);

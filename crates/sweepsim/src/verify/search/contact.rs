@@ -9,7 +9,7 @@
 
 use super::Arena;
 use crate::error::SweepError;
-use crate::time::path_parts::PathPart;
+use crate::time::path_parts::{Form, PathPart};
 use crate::verify::lines::Lines;
 use crate::verify::solid::MovingSolid;
 use nalgebra::Matrix3;
@@ -76,8 +76,11 @@ impl Arena<'_> {
     ) -> Result<Lines, SweepError> {
         let moved = |part: &PathPart| PathPart {
             segment: part.segment.moved(&Matrix3::identity(), shift),
-            level_arc: part.level_arc.map(|level_arc| level_arc.moved([shift[0], shift[1]])),
-            vertical_arc: part.vertical_arc.map(|vertical_arc| vertical_arc.moved(shift)),
+            form: match part.form {
+                Form::LevelArc(arc) => Form::LevelArc(arc.moved([shift[0], shift[1]])),
+                Form::VerticalArc(arc) => Form::VerticalArc(arc.moved(shift)),
+                ref other => other.clone(),
+            },
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

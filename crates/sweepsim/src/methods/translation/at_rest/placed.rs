@@ -27,14 +27,14 @@ pub(crate) enum Neighbour {
 impl Neighbour {
     /// An end of a move of a tool that does not turn, or that stands along the dexels: a turn about its own axis moves no point out of its surface.
     pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
-        if part.vertical_arc.is_some() {
+        if part.vertical_arc().is_some() {
             return Some(Self::Along(part.segment.velocity(end)[1]));
         }
         if !(part.segment.is_arc() && part.segment.turns().len() == 1 || stands(part)) {
             return None;
         }
         let travel = part.segment.travel();
-        Some(Self::Along(match (&part.level_arc, end) {
+        Some(Self::Along(match (part.level_arc(), end) {
             (None, _) => travel,
             (Some(level_arc), end) => {
                 let [x, y] = level_arc.ahead(if end == SegmentEnd::Start { 0.0 } else { 1.0 });

@@ -2,7 +2,7 @@
 
 use super::Local;
 use crate::time::circles::LevelArc;
-use crate::time::path_parts::PathPart;
+use crate::time::path_parts::{Form, PathPart};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -42,14 +42,13 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
 
 /// Whether the tool stands exactly along the dexels all the time, and does not turn but with an arc.
 pub(crate) fn stands(part: &PathPart) -> bool {
-    let PathPart {
-        segment,
-        level_arc,
-        vertical_arc,
-        ..
-    } = part;
+    let segment = &part.segment;
     let still = segment.turns().len() == 1 && is_upright(&segment.turns()[0]);
-    level_arc.is_some() || still && (vertical_arc.is_some() || segment.is_arc())
+    match part.form {
+        Form::LevelArc(_) => true,
+        Form::VerticalArc(_) => still,
+        Form::Joins(_) | Form::Other => still && segment.is_arc(),
+    }
 }
 
 /// The rounding error of the coordinates that closed forms compute, products of a few rounded numbers, from the one that all systems allow for: a
