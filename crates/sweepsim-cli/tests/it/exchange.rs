@@ -167,7 +167,9 @@ fn comparison_tells_the_worst() {
     }
     let compared = |part: &str, target: &str| -> [f64; 2] {
         let [part, target] = [part, target].map(|name| format!("{name}/part.ply"));
-        let json = workdir.good(&["compare", &part, &target, "--out", "cmp", "--size", "60x40", "--json"]);
+        let json = workdir.good(&[
+            "compare", &part, &target, "--out", "cmp", "--cells", "60x60", "--size", "60x40", "--json",
+        ]);
         let report: serde_json::Value = serde_json::from_str(&json).unwrap();
         ["gouge", "excess"].map(|side| report[side]["max"].as_f64().unwrap())
     };

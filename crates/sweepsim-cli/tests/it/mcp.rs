@@ -78,7 +78,13 @@ fn bracket(folder: &Path) {
         "bracket.ron",
         "bracket.stl",
     ] {
-        std::fs::copy(fixture("verify").join(name), folder.join(name)).unwrap();
+        let bytes = std::fs::read(fixture("verify").join(name)).unwrap();
+        // Fewer lines than for people.
+        let bytes = match String::from_utf8(bytes) {
+            Ok(text) => text.replace("cells: (200, 120)", "cells: (100, 60)").into_bytes(),
+            Err(mesh) => mesh.into_bytes(),
+        };
+        std::fs::write(folder.join(name), bytes).unwrap();
     }
 }
 

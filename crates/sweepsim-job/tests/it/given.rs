@@ -52,9 +52,10 @@ fn parts_in_memory_are_compared_as_those_in_files() {
     let soup = TriangleSoup::block([0.0, 0.0, -10.0], [40.0, 20.0, -2.5]);
     sweepsim_formats::write_stl(&soup.triangles, &mut std::fs::File::create(file("target.stl")).unwrap()).unwrap();
     let target = sweepsim_formats::read_mesh_file(&file("target.stl")).unwrap();
-    let request = CompareRequest::new(file("part.dexels"), file("target.stl"));
+    let mut request = CompareRequest::new(file("part.dexels"), file("target.stl"));
+    request.view.size = [160, 120];
     let of_files = request.read().unwrap().compare(&()).unwrap();
-    let request = CompareRequest::new(file("part.dexels"), file("target.stl"))
+    let request = request
         .with_part(Part::Dexels(outcome.part().clone()))
         .with_target(Part::Mesh(target));
     std::fs::remove_dir_all(folder.path()).unwrap();

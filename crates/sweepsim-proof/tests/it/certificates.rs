@@ -294,7 +294,7 @@ fn times_are_not_exchanged() {
     certified.check(known);
     let bytes = &certified.found.trees[0].bytes;
     let (mut exchanged, mut refused) = (0, 0);
-    for number in nodes(bytes).into_iter().filter(|number| bytes[*number] == 0).take(60) {
+    for number in nodes(bytes).into_iter().filter(|number| bytes[*number] == 0).take(30) {
         let middle = after(bytes, number + 1).expect("a node");
         let end = after(bytes, middle).expect("a node");
         let (first, second) = (&bytes[number + 1..middle], &bytes[middle..end]);

@@ -332,7 +332,7 @@ fn a_lollipop_on_a_level_arc_is_certified() {
 
 #[test]
 fn random_scenes_are_enclosed() {
-    run(40, (16, 4));
+    run(20, (16, 4));
 }
 
 #[test]

@@ -54,9 +54,19 @@ fn relative(x: f64, side: &Enclosure) -> RBig {
 
 #[test]
 fn boxes_without_another_root_hold_exactly_one_wherever_the_domain_lies() {
+    hold_exactly_one(1_500);
+}
+
+#[test]
+#[ignore = "slow: half a minute"]
+fn so_do_those_of_many_more_domains() {
+    hold_exactly_one(36_000);
+}
+
+fn hold_exactly_one(cases: usize) {
     let mut random = Random(12);
     let (mut certified, mut planted, mut open) = (0, 0, 0);
-    for case in 0..3_600 {
+    for case in 0..cases {
         let n = 1 + case % 3;
         let domain: Vec<Enclosure> = (0..n).map(|_| side(&mut random)).collect();
         // Roots at dyadic fractions of the sides; sums along the variables rotate them: xᵢ + xᵢ₊₁/4 takes two values.

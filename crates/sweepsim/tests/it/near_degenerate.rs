@@ -313,14 +313,14 @@ fn are_cheap(methods: &[Method], families: impl Fn(usize) -> Vec<Family>, distan
 
 #[test]
 fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
-    all_are_cheap(&[Method::General], &[1e-9, 1e-12, 0.0]);
+    all_are_cheap(&[Method::General], &[1e-9, 0.0]);
 }
 
 #[test]
 fn so_it_does_by_all_methods() {
-    // Two methods look at every second family, two at the others.
-    let half = |number: usize| families().into_iter().skip(number % 2).step_by(2).collect();
-    are_cheap(&METHODS[1..], half, &[1e-9]);
+    // Each of four methods looks at every third family, and each family is looked at.
+    let third = |number: usize| families().into_iter().skip(number % 3).step_by(3).collect();
+    are_cheap(&METHODS[1..], third, &[1e-9]);
 }
 
 #[test]

@@ -103,7 +103,16 @@ fn a_certificate_belongs_to_its_files() {
 fn what_is_refuted_is_not_proven() {
     let folder = bracket();
     let run = |more: &[&str]| {
-        let all = ["verify", "bracket-faulty.ron", "--only", "report", "--out", "out"];
+        let all = [
+            "verify",
+            "bracket-faulty.ron",
+            "--cells",
+            "50x30",
+            "--only",
+            "report",
+            "--out",
+            "out",
+        ];
         folder.run(&[&all[..], more].concat())
     };
     let output = run(&["--certificate", "faulty.json"]);

@@ -223,7 +223,7 @@ fn planted_faults(seeds: u64, least: usize) {
 
 #[test]
 fn planted_faults_are_found() {
-    planted_faults(20, 0);
+    planted_faults(12, 0);
 }
 
 #[test]
