@@ -72,7 +72,7 @@ impl Patch {
                 let three = |own: [Vector3<f64>; 3]| patch(own.into_iter().collect());
                 let pairs = |first: usize| (first..count).flat_map(move |i| (first..i).map(move |j| (i, j)));
                 if whole.points(0.0).is_some() {
-                    // In the cone of the others seen from the first: what is beyond it is between two of them.
+                    // A vector in their cone, less enough of the first of them, is between two others (Carathéodory).
                     return pairs(1).map(|(i, j)| three([own[0], own[i], own[j]])).collect();
                 }
                 // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
