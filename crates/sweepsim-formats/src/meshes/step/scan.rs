@@ -184,7 +184,8 @@ impl Scan {
                     done = statement.end;
                 }
                 b"TOROIDAL_SURFACE" | b"DEGENERATE_TOROIDAL_SURFACE" => {
-                    if let Some(revolved) = tori::revolved(self, text, number, &mut next) {
+                    let attributes = |number| self.attributes(text, number);
+                    if let Some(revolved) = tori::revolved(number, attributes, &mut next) {
                         out.extend_from_slice(&text[done..keyword.start]);
                         out.extend_from_slice(revolved.as_bytes());
                         done = statement.end;

@@ -1,17 +1,21 @@
 //! Tori that meet themselves.
 //!
-//! A torus whose minor radius `r` is larger than the major one, `R`, has points with `R + r cos v < 0` on the far side of
-//! its axis, and crowned heads and lenses are made of these. The library takes each point of such a torus for one of the
-//! near side. As a surface of revolution, of the circle about the axis, it has the same parameters and the same normals,
-//! and there points are looked for at all of them.
+//! A torus whose minor radius `r` is larger than the major one, `R`, has points with `R + r cos v < 0` on the far side
+//! of its axis, and crowned heads and lenses are made of these. The library takes each point of such a torus for one of
+//! the near side. As a surface of revolution, of the circle about the axis, it has the same parameters and the same
+//! normals, and there points are looked for at all of them.
 
-use super::scan::Scan;
 use nalgebra::Vector3;
 
-/// A torus as a surface of revolution, from its keyword to the semicolon, and what that refers to; `None` of a torus that
-/// does not meet itself, or is not placed as it should be. Numbers from `next` on are free.
-pub(super) fn revolved(scan: &Scan, text: &[u8], torus: u64, next: &mut u64) -> Option<String> {
-    let torus = scan.attributes(text, torus as usize)?;
+/// A torus as a surface of revolution, from its keyword to the semicolon, and what that refers to; `None` of a torus
+/// that does not meet itself, or is not placed as it should be. `attributes`: of each entity. Numbers from `next` on
+/// are free.
+pub(super) fn revolved<'a>(
+    torus: u64,
+    attributes: impl Fn(usize) -> Option<Vec<&'a [u8]>>,
+    next: &mut u64,
+) -> Option<String> {
+    let torus = attributes(torus as usize)?;
     let [_, placement, major, minor, ..] = torus[..] else {
         return None;
     };
@@ -19,11 +23,11 @@ pub(super) fn revolved(scan: &Scan, text: &[u8], torus: u64, next: &mut u64) -> 
     if !(minor > major) {
         return None;
     }
-    let placement = scan.attributes(text, reference(placement)?)?;
+    let placement = attributes(reference(placement)?)?;
     let [_, origin, axis, ahead] = placement[..] else {
         return None;
     };
-    let vector = |at: &[u8]| vector(scan.attributes(text, reference(at)?)?.get(1)?);
+    let vector = |at: &[u8]| vector(attributes(reference(at)?)?.get(1)?);
     let (centre, z, ahead) = (vector(origin)?, vector(axis)?.normalize(), vector(ahead)?);
     let x = (ahead - z * z.dot(&ahead)).normalize();
     let words = |v: Vector3<f64>| format!("({:.17},{:.17},{:.17})", v.x, v.y, v.z);

@@ -39,8 +39,8 @@ fn a_coarse_bar_is_as_round_as_its_file_says() {
     assert!((exact.nearest([1.0, 2.5, 6.5]).unwrap().distance - 1.5).abs() < 1e-12);
 }
 
-/// A washer whose top is crowned: part of a torus with a minor radius of 10 and a major one of 2, on the far side of its
-/// axis.
+/// A washer whose top is crowned: part of a torus with a minor radius of 10 and a major one of 2, on the far side of
+/// its axis.
 #[test]
 fn a_torus_that_meets_itself_is_read() {
     let height = |r: f64| (100.0 - (r + 2.0).powi(2)).sqrt();
