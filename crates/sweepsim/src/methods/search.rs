@@ -15,7 +15,7 @@ use crate::methods::translation::{self, Ceiling, Grazed, Heading, Patches};
 use crate::methods::turning::{self, Accuracy, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
@@ -101,17 +101,17 @@ impl Search<'_> {
         let by_share = |share: f64| self.source_after(at, share);
         let collector = (&mut collector, self.ceiling);
         let rounding = self.size.system_rounding;
-        match &part.form {
-            Form::VerticalArc(arc) => {
+        match &part.kind {
+            PartKind::VerticalArc(arc) => {
                 let arc = (arc, segment, translation::slack(rounding), self.height_tolerance);
                 translation::sweep_vertical_arc(outline, arc, collector, by_share, settled);
             }
-            Form::LevelArc(arc) => {
+            PartKind::LevelArc(arc) => {
                 if let Some(heading) = Heading::around(arc, segment, rounding) {
                     translation::sweep_level_arc(outline, (&heading, arc), collector, by_share, settled);
                 }
             }
-            Form::Joins(_) | Form::Other => {
+            PartKind::Joins(_) | PartKind::Other => {
                 if let Some(heading) = Heading::new(segment, rounding) {
                     let source = |t| source(part, self.path, segment.time(t));
                     translation::sweep_straight(outline, &heading, collector, source, settled);

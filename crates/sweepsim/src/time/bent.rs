@@ -6,7 +6,7 @@
 //! makes no difference to that.
 
 use crate::time::joined::divided;
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use crate::tolerances::Tolerances;
 use nalgebra::Vector3;
 use std::borrow::Cow;
@@ -37,29 +37,29 @@ impl PathPart {
     /// A straight move as two, by way of a point beside its middle; `None` for other moves, and for turns whose halves would have clocks of their own.
     fn halves(&self, tolerances: &Tolerances, attempt: usize) -> Option<[Self; 2]> {
         let is_straight = self.segment.is_arc() && self.segment.time(0.25) == 0.25;
-        if !is_straight || matches!(self.form, Form::LevelArc(_) | Form::VerticalArc(_)) {
+        if !is_straight || matches!(self.kind, PartKind::LevelArc(_) | PartKind::VerticalArc(_)) {
             return None;
         }
         let [from, to] = self.segment.tips().map(Vector3::from);
         let axis = self.segment.start().column(2).into_owned();
         let aside = tolerances.bend(attempt, to - from, axis)?;
-        let (at, forms) = match self.joined() {
-            [] => (0.5, [self.form.clone(), self.form.clone()]),
+        let (at, kinds) = match self.joined() {
+            [] => (0.5, [self.kind.clone(), self.kind.clone()]),
             // Joined moves are bent where one of them ends.
             joined => {
                 let (at, joined) = divided(joined, joined.len() / 2);
-                (at, joined.map(Form::Joins))
+                (at, joined.map(PartKind::Joins))
             }
         };
-        let half = |[from, to]: [Vector3<f64>; 2], [begin, end]: [f64; 2], form: Form| Self {
+        let half = |[from, to]: [Vector3<f64>; 2], [begin, end]: [f64; 2], kind: PartKind| Self {
             segment: self.segment.part(begin, end).with_tips([from, to]),
             start: self.start + self.share * begin as f32,
             share: self.share * (end - begin) as f32,
-            form,
+            kind,
             number: self.number,
         };
         let middle = from + (to - from) * at + aside;
-        let [first, second] = forms;
+        let [first, second] = kinds;
         Some([
             half([from, middle], [0.0, at], first),
             half([middle, to], [at, 1.0], second),

@@ -1,6 +1,6 @@
 //! Moves without rotation that go on in the direction of the one before, joined to one: each of them would be solved for the same lines again.
 
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use nalgebra::Vector3;
 
 /// A part of a path among those that are joined.
@@ -51,7 +51,7 @@ pub(crate) fn push_joined(parts: &mut Vec<PathPart>, next: PathPart, deviation: 
 }
 
 fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
-    let (Form::Joins(joined), Form::Joins(_)) = (&last.form, &next.form) else {
+    let (PartKind::Joins(joined), PartKind::Joins(_)) = (&last.kind, &next.kind) else {
         return false;
     };
     if joined.len() >= MOST || last.segment.turns() != next.segment.turns() {
@@ -83,7 +83,7 @@ fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
     for stretch in &mut joined {
         stretch.until = (stretch.tip - from).dot(&ahead) / length;
     }
-    last.form = Form::Joins(joined);
+    last.kind = PartKind::Joins(joined);
     last.segment = last.segment.clone().with_tips([from, to]);
     true
 }
@@ -91,8 +91,8 @@ fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
 impl PathPart {
     /// Those that it consists of, if they are several.
     pub(crate) fn joined(&self) -> &[Stretch] {
-        match &self.form {
-            Form::Joins(joined) => joined,
+        match &self.kind {
+            PartKind::Joins(joined) => joined,
             _ => &[],
         }
     }

@@ -12,7 +12,7 @@ use sweepsim_motion::{Path, Segment};
 #[derive(Clone, Debug)]
 pub struct PathPart {
     pub segment: Segment,
-    pub(crate) form: Form,
+    pub(crate) kind: PartKind,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -22,7 +22,7 @@ pub struct PathPart {
 
 /// What is known of a motion beyond its segment.
 #[derive(Clone, Debug)]
-pub(crate) enum Form {
+pub(crate) enum PartKind {
     /// A whole straight move without rotation along which the tip's displacement grows, so that the next one may be [joined](super::joined) to it; those that it
     /// consists of, if they are several.
     Joins(Vec<Stretch>),
@@ -38,7 +38,7 @@ impl PathPart {
     pub fn new(segment: Segment, number: u32, [start, share]: [f32; 2]) -> Self {
         Self {
             segment,
-            form: Form::Other,
+            kind: PartKind::Other,
             number,
             start,
             share,
@@ -46,15 +46,15 @@ impl PathPart {
     }
 
     pub(crate) fn level_arc(&self) -> Option<LevelArc> {
-        match self.form {
-            Form::LevelArc(arc) => Some(arc),
+        match self.kind {
+            PartKind::LevelArc(arc) => Some(arc),
             _ => None,
         }
     }
 
     pub(crate) fn vertical_arc(&self) -> Option<VerticalArc> {
-        match self.form {
-            Form::VerticalArc(arc) => Some(arc),
+        match self.kind {
+            PartKind::VerticalArc(arc) => Some(arc),
             _ => None,
         }
     }
@@ -141,7 +141,11 @@ pub(crate) fn parts(
             };
             let joins = last == 0 && arcs && grows && segment.turns().len() == 1;
             parts.push(PathPart {
-                form: if joins { Form::Joins(Vec::new()) } else { Form::Other },
+                kind: if joins {
+                    PartKind::Joins(Vec::new())
+                } else {
+                    PartKind::Other
+                },
                 ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
             });
         }
@@ -255,14 +259,14 @@ fn carried_to(
 fn on_level_arcs(number: usize, parts: Vec<(LevelArc, Segment)>) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
     parts.into_iter().enumerate().map(move |(n, (arc, segment))| PathPart {
-        form: Form::LevelArc(arc),
+        kind: PartKind::LevelArc(arc),
         ..PathPart::new(segment, number as u32, [n as f64 * share, share].map(|x| x as f32))
     })
 }
 
 fn on_vertical_arc(number: usize, part: VerticalArcPart) -> PathPart {
     PathPart {
-        form: Form::VerticalArc(part.vertical_arc),
+        kind: PartKind::VerticalArc(part.vertical_arc),
         ..PathPart::new(part.segment, number as u32, [part.start, part.share].map(|x| x as f32))
     }
 }

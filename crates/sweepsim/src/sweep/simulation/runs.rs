@@ -8,7 +8,7 @@ use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
 use crate::time::joined::push_joined;
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use crate::time::swept_box::swept_box;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -104,7 +104,7 @@ impl<'a> Runs<'a> {
         if from > self.over && to > self.over {
             return None;
         }
-        if matches!(part.form, Form::LevelArc(_) | Form::VerticalArc(_)) {
+        if matches!(part.kind, PartKind::LevelArc(_) | PartKind::VerticalArc(_)) {
             return whole;
         }
         let t = (self.over - from) / (to - from);

@@ -9,7 +9,7 @@
 
 use super::Arena;
 use crate::error::SweepError;
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use crate::verify::lines::Lines;
 use crate::verify::solid::MovingSolid;
 use nalgebra::Matrix3;
@@ -76,9 +76,9 @@ impl Arena<'_> {
     ) -> Result<Lines, SweepError> {
         let moved = |part: &PathPart| PathPart {
             segment: part.segment.moved(&Matrix3::identity(), shift),
-            form: match part.form {
-                Form::LevelArc(arc) => Form::LevelArc(arc.moved([shift[0], shift[1]])),
-                Form::VerticalArc(arc) => Form::VerticalArc(arc.moved(shift)),
+            kind: match part.kind {
+                PartKind::LevelArc(arc) => PartKind::LevelArc(arc.moved([shift[0], shift[1]])),
+                PartKind::VerticalArc(arc) => PartKind::VerticalArc(arc.moved(shift)),
                 ref other => other.clone(),
             },
             ..part.clone()

@@ -2,7 +2,7 @@
 
 use super::Local;
 use crate::time::circles::LevelArc;
-use crate::time::path_parts::{Form, PathPart};
+use crate::time::path_parts::{PartKind, PathPart};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -44,10 +44,10 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
 pub(crate) fn stands(part: &PathPart) -> bool {
     let segment = &part.segment;
     let still = segment.turns().len() == 1 && is_upright(&segment.turns()[0]);
-    match part.form {
-        Form::LevelArc(_) => true,
-        Form::VerticalArc(_) => still,
-        Form::Joins(_) | Form::Other => still && segment.is_arc(),
+    match part.kind {
+        PartKind::LevelArc(_) => true,
+        PartKind::VerticalArc(_) => still,
+        PartKind::Joins(_) | PartKind::Other => still && segment.is_arc(),
     }
 }
 
