@@ -21,6 +21,7 @@ mod kernel;
 mod scan;
 #[cfg(feature = "step")]
 mod styles;
+#[cfg(feature = "step")]
 mod tori;
 #[cfg(feature = "step")]
 mod units;
