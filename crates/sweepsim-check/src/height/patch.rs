@@ -164,7 +164,7 @@ impl Patch {
         let pairs = |i: usize| (0..i).flat_map(move |j| (0..j).map(move |k| [i, j, k]));
         (0..self.normals.len())
             .flat_map(pairs)
-            .map(|three| self.of(three))
+            .map(|three| self.between(three))
             .collect()
     }
 
@@ -177,12 +177,13 @@ impl Patch {
         Some(
             (1..self.normals.len())
                 .flat_map(pairs)
-                .map(|three| self.of(three))
+                .map(|three| self.between(three))
                 .collect(),
         )
     }
 
-    fn of(&self, normals: [usize; 3]) -> Self {
+    /// The patch between three of its normals.
+    fn between(&self, normals: [usize; 3]) -> Self {
         Self {
             corners: self.corners.clone(),
             normals: normals.map(|n| self.normals[n]).to_vec(),

@@ -43,7 +43,8 @@ pub(crate) fn quick(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> (
         });
     }
     let axis = stretch.ends[0].axis;
-    // Where many are as deep, that with the axis nearest; it is the deepest if the tool moves across its axis.
+    // Of times at which the point is as deep, that with the axis nearest: always the deepest, if the tool moves across
+    // its axis.
     let order = |time: f64| {
         if stretch.is_level() {
             let off = point - stretch.tip(time);

@@ -71,15 +71,13 @@ fn join(last: &mut PathPart, next: &PathPart, deviation: f64) -> bool {
         reached = along;
         goes_on && (tip - from - ahead * along).norm() <= deviation
     };
-    let mut joined = match joined.is_empty() {
-        true => vec![Stretch::of(last, between)],
-        false => joined.clone(),
-    };
     // The last one of these is the tip between.
-    if !joined.iter().all(|stretch| passes(&stretch.tip)) {
+    let own = [Stretch::of(last, between)];
+    let before = if joined.is_empty() { &own[..] } else { joined };
+    if !before.iter().all(|stretch| passes(&stretch.tip)) {
         return false;
     }
-    joined.push(Stretch::of(next, to));
+    let mut joined = [before, &[Stretch::of(next, to)]].concat();
     for stretch in &mut joined {
         stretch.until = (stretch.tip - from).dot(&ahead) / length;
     }

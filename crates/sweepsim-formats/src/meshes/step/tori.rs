@@ -2,8 +2,8 @@
 //!
 //! A torus whose minor radius `r` is larger than the major one, `R`, has points with `R + r cos v < 0` on the far side
 //! of its axis, and crowned heads and lenses are made of these. The library takes each point of such a torus for one of
-//! the near side. As a surface of revolution, of the circle about the axis, it has the same parameters and the same
-//! normals, and there points are looked for at all of them.
+//! the near side. The surface of revolution of its circle has the same parameters and the same normals, and there the
+//! library looks for points on both sides.
 
 use nalgebra::Vector3;
 
