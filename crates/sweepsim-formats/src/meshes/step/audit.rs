@@ -56,8 +56,36 @@ pub(super) fn check(x: &Exchange) -> Result<(), Refused> {
             return Err((number, message));
         }
     }
+    sizes(x)?;
     placements(x)?;
     occurrences(x)
+}
+
+/// Radii and half axes, by kind and number of the attribute.
+const SIZES: [(&str, usize); 6] = [
+    ("CIRCLE", 2),
+    ("ELLIPSE", 2),
+    ("ELLIPSE", 3),
+    ("CYLINDRICAL_SURFACE", 2),
+    ("SPHERICAL_SURFACE", 2),
+    ("TOROIDAL_SURFACE", 3),
+];
+
+/// What has a radius has one that is more than nothing: the library panics.
+fn sizes(x: &Exchange) -> Result<(), Refused> {
+    for (kind, attribute) in SIZES {
+        for (number, instance) in x.of_type(kind) {
+            let size = instance.params().get(attribute).and_then(|value| x.real(value));
+            if size.is_some_and(|size| !(size > 0.0)) {
+                let size = size.unwrap_or_default();
+                return Err((
+                    number,
+                    format!("#{number} is a {kind} of radius {size}: expected more than 0"),
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn missing(at: usize, number: usize) -> Refused {

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kentron::geometry::ParametricCurve;
 use kentron::geometry::surface::Surface;
 use kentron::io::step::Node;
 use kentron::math::{Direction, Point, Transform, Transformable, Vector};
@@ -10,14 +9,14 @@ use kentron::meshing::{MeshOptions, mesh_with};
 use kentron::topology::{Model, NodeKind, Orientation, Shape};
 use sweepsim_dexel::{AnalyticSurface, TriangleSoup};
 
-use super::fill;
+use super::{deviation, fill};
 
 /// The most that neighbouring chords turn, in radians.
 const TURN: f64 = 0.5;
 /// How often a part is meshed anew, finer, where the first mesh is not as near as asked.
 const ATTEMPTS: usize = 5;
-/// A distance that is no less than this part of what it was before it was meshed finer stays.
-const STAYS: f64 = 0.9;
+/// A distance that is no less than this part of what it was with chords twice as long stays: a quarter is usual.
+const STAYS: f64 = 0.7;
 /// How many triangles are enough not to ask for more.
 const LARGE: usize = 2_000_000;
 /// The most triangles of a file.
@@ -56,19 +55,18 @@ impl Placed {
     }
 }
 
-/// Meshes the bodies of a tree of products. Returns them, and the largest distance found between triangles and
-/// surfaces.
+/// Meshes the bodies of a tree of products.
 ///
 /// The library leaves a triangle out here and there, where corners are in line; another chord error then does not. And
 /// a surface that bends where it was not looked at needs a smaller one than was asked for.
-pub(super) fn bodies(model: &Model, roots: &[Node], chord: f64) -> Result<(Vec<Placed>, f64), String> {
+pub(super) fn bodies(model: &Model, roots: &[Node], chord: f64) -> Result<Found, String> {
     let mut best: Option<Found> = None;
     let mut wanted = chord;
     for _ in 0..ATTEMPTS {
         let found = attempt(model.clone(), roots, wanted)?;
         let near = found.deviation <= chord;
         let (closed, large) = (found.open == 0, found.triangles > LARGE);
-        // A distance that stays is one between the file's own edges and surfaces.
+        // Edges of the file that are not in its surfaces stay as far away, and thin triangles beside edges nearly so.
         let stays = best
             .as_ref()
             .is_some_and(|before| found.deviation > STAYS * before.deviation);
@@ -83,8 +81,7 @@ pub(super) fn bodies(model: &Model, roots: &[Node], chord: f64) -> Result<(Vec<P
         }
         wanted *= if near || stays { 0.83 } else { 0.5 };
     }
-    best.map(|found| (found.bodies, found.deviation))
-        .ok_or_else(|| "nothing was meshed".into())
+    best.ok_or_else(|| "nothing was meshed".into())
 }
 
 fn attempt(mut model: Model, roots: &[Node], chord: f64) -> Result<Found, String> {
@@ -101,10 +98,14 @@ fn attempt(mut model: Model, roots: &[Node], chord: f64) -> Result<Found, String
     Ok(found)
 }
 
+/// The bodies of a file, as triangles.
 #[derive(Default)]
-struct Found {
-    bodies: Vec<Placed>,
-    deviation: f64,
+pub(super) struct Found {
+    pub bodies: Vec<Placed>,
+    /// The largest distance found between triangles and surfaces.
+    pub deviation: f64,
+    /// How far edges are from the surfaces of the file, where triangles are farther than asked.
+    pub gap: f64,
     triangles: usize,
     /// How many solids do not close.
     open: usize,
@@ -125,7 +126,11 @@ impl Found {
                 relative: false,
             };
             mesh_with(model, shape, options).map_err(|error| error.to_string())?;
-            self.deviation = self.deviation.max(deviation(model, shape));
+            let deviation = deviation::of_shape(model, shape, chord);
+            if deviation > chord {
+                self.gap = self.gap.max(deviation::of_file(model, shape));
+            }
+            self.deviation = self.deviation.max(deviation);
             let numbers = node.subshapes.iter().filter(|part| part.shape.kind() == NodeKind::Face);
             let number = |part: &kentron::io::step::Subshape| part.name.as_ref()?.strip_prefix('#')?.parse().ok();
             let numbers: Vec<(Shape, usize)> = numbers.filter_map(|part| Some((part.shape, number(part)?))).collect();
@@ -194,43 +199,6 @@ impl Found {
         self.bodies.push(body);
         Ok(())
     }
-}
-
-/// The largest distance found between triangles and surfaces, and between chords and edges.
-fn deviation(model: &Model, shape: Shape) -> f64 {
-    let unplaced = |shape: Shape| Shape::new(shape.node);
-    let faces = model.unique_subshapes(shape, NodeKind::Face).into_iter();
-    let of_faces = faces.filter_map(|face| Some(model.face_mesh(unplaced(face))?.deflection()));
-    let mut worst = of_faces.fold(0.0, f64::max);
-    for edge in model.unique_subshapes(shape, NodeKind::Edge) {
-        let edge = unplaced(edge);
-        let (Some(polyline), Some((curve, _, _))) = (model.edge_polyline(edge), model.edge_curve(edge)) else {
-            continue;
-        };
-        let Some(parameters) = polyline.parameters() else {
-            continue;
-        };
-        for (ends, times) in polyline.nodes().windows(2).zip(parameters.windows(2)) {
-            // Not only halfway, where an S crosses its chord.
-            for share in [0.25, 0.5, 0.75] {
-                let point = curve.point(times[0] + share * (times[1] - times[0]));
-                worst = worst.max(distance(point, ends[0], ends[1]));
-            }
-        }
-    }
-    worst
-}
-
-/// The distance of a point from a stretch.
-fn distance(point: Point, from: Point, to: Point) -> f64 {
-    let along = to - from;
-    let square = along.dot(along);
-    let share = if square > 0.0 {
-        ((point - from).dot(along) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    point.distance(from + along * share)
 }
 
 fn kind(surface: &Surface) -> &'static str {

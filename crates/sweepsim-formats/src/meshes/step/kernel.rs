@@ -31,7 +31,7 @@ pub(super) fn parse(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
         reader.join().unwrap_or_else(|panic| {
             let reason = words(&*panic);
             Err(problem(format!(
-                "the reader of STEP files failed at this one ({reason}): expected an entity with all its attributes"
+                "the reader of STEP files failed at this one ({reason}): expected entities with attributes as their schema has them"
             )))
         })
     })
@@ -62,8 +62,12 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
     let mut model = Model::default();
     let roots = step::read_assembly(&mut model, &mut &rewritten[..])
         .map_err(|error| error_at(&scan, text, &error.to_string(), Some(&exchange)))?;
-    let (placed, deviation) =
-        build::bodies(&model, &roots, chord).map_err(|message| error_at(&scan, text, &message, None))?;
+    let build::Found {
+        bodies: placed,
+        deviation,
+        gap,
+        ..
+    } = build::bodies(&model, &roots, chord).map_err(|message| error_at(&scan, text, &message, None))?;
 
     let reached: BTreeSet<usize> = placed.iter().flat_map(|body| &body.faces).copied().collect();
     if let Some((face, of)) = file_faces.iter().find(|(face, _)| !reached.contains(face)) {
@@ -86,6 +90,7 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
     };
     file.part(
         placed,
+        gap,
         StepPart {
             schemas: scan.schemas.clone(),
             unit,
@@ -148,8 +153,9 @@ struct File<'a> {
 }
 
 impl File<'_> {
-    /// Joins the solids, or the sheets where there is no solid.
-    fn part(&self, placed: Vec<build::Placed>, mut part: StepPart) -> Result<StepPart, FormatError> {
+    /// Joins the solids, or the sheets where there is no solid. `gap`: between edges and surfaces of the file, where
+    /// triangles are farther than asked.
+    fn part(&self, placed: Vec<build::Placed>, gap: f64, mut part: StepPart) -> Result<StepPart, FormatError> {
         let any_solid = placed.iter().any(|body| body.solid);
         let mut soup = TriangleSoup::default();
         let mut numbers = Vec::new();
@@ -194,18 +200,19 @@ impl File<'_> {
             part.notes
                 .push("no solid: the faces are sheets, which enclose nothing".into());
         }
-        if part.deviation > FAR * part.chord {
-            let message = format!(
-                "triangles would be {:.2e} mm from the file's surfaces, where {:.2e} mm was asked: expected edges that lie in the surfaces that they bound",
-                part.deviation, part.chord
-            );
-            return Err(FormatError::new(Problem::syntax(message), None));
-        }
         if part.deviation > part.chord {
-            part.notes.push(format!(
-                "triangles are up to {:.2e} mm from the file's surfaces, where {:.2e} mm was asked: edges of the file are as far from the surfaces that they bound",
-                part.deviation, part.chord
-            ));
+            let (deviation, chord) = (part.deviation, part.chord);
+            let found = format!("up to {deviation:.2e} mm from the file's surfaces, where {chord:.2e} mm was asked");
+            let why = if gap > 0.5 * deviation {
+                format!("edges of the file are up to {gap:.2e} mm from the surfaces that they bound")
+            } else {
+                "more triangles come little nearer".to_owned()
+            };
+            if deviation > FAR * chord {
+                let message = format!("triangles would be {found} ({why}): expected at most {FAR} times as much");
+                return Err(FormatError::new(Problem::syntax(message), None));
+            }
+            part.notes.push(format!("triangles are {found}: {why}"));
         }
         let numbered = |error: MeshError| FormatError::new(Problem::syntax(error.to_string()), None);
         // Corners that coincide are no triangle, here as in the mesh.

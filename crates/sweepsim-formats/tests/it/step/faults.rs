@@ -93,11 +93,73 @@ fn faults_are_named_with_their_line() {
             "expected a reference",
         ),
         (cube.replace("10.0", "1e999"), ""),
+        (
+            super::plate(false).text().replace(",5.0)", ",-5.0)"),
+            "is a CIRCLE of radius -5: expected more than 0",
+        ),
+        (
+            with(
+                &super::plate(false).text(),
+                "CYLINDRICAL_SURFACE",
+                "CYLINDRICAL_SURFACE('',#1,0.)",
+            ),
+            "is a CYLINDRICAL_SURFACE of radius 0: expected more than 0",
+        ),
     ];
     for (text, expected) in &cases {
         let message = refused(text);
         assert!(message.contains(expected), "expected {expected}, found {message}");
     }
+}
+
+/// A block of 10 mm whose top is a B-spline surface: level, at a height, with the middle of its parameters at `x`.
+fn capped(height: f64, x: f64) -> String {
+    let mut file = Writer::new(false);
+    let faces = file.block_faces([0.0; 3], [10.0; 3]);
+    let rows = [0.0, x, 10.0].map(|x| [0.0, 10.0].map(|y| file.point([x, y, height])));
+    let rows = rows.map(|[near, far]| format!("(#{near},#{far})")).join(",");
+    let sheet = format!(
+        "B_SPLINE_SURFACE_WITH_KNOTS('',2,1,({rows}),.UNSPECIFIED.,.F.,.F.,.F.,(3,3),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.)"
+    );
+    let solid = file.solid("block", &faces);
+    file.product("part", &[solid]);
+    let text = file.text();
+    let top = text.rfind("=PLANE(").unwrap();
+    format!("{}{}", &text[..top], with(&text[top..], "PLANE", &sheet))
+}
+
+/// Edges that are not in the surfaces that they bound: said with their distance, as no triangles are nearer.
+#[test]
+fn edges_beside_their_surfaces_are_told() {
+    let text = capped(10.001, 5.0);
+    let part = parse_step(text.as_bytes(), 2e-4).unwrap();
+    assert!((0.00095..0.00105).contains(&part.deviation), "{}", part.deviation);
+    let notes = part.notes.join("\n");
+    assert!(
+        notes.contains("where 2.00e-4 mm was asked: edges of the file are up to 1.00e-3 mm from the surfaces"),
+        "{notes}"
+    );
+    // Many times as far as asked.
+    let message = parse_step(text.as_bytes(), 4e-5).unwrap_err().to_string();
+    assert!(
+        message.contains("edges of the file are up to 1.00e-3 mm") && message.contains("expected at most 20 times"),
+        "{message}"
+    );
+    // As near as asked: nothing is said.
+    assert!(parse_step(text.as_bytes(), 0.002).unwrap().notes.is_empty());
+}
+
+/// Parameters that are uneven say nothing of distances: a flat top is flat.
+#[test]
+fn distances_are_those_of_places() {
+    let part = parse_step(capped(10.0, 1.0).as_bytes(), 1e-3).unwrap();
+    assert!(
+        part.deviation < 1e-9 && part.notes.is_empty(),
+        "{} {:?}",
+        part.deviation,
+        part.notes
+    );
+    assert!((part.mesh.soup().unwrap().volume() - 1000.0).abs() < 1e-6);
 }
 
 /// A solid without one of its faces, with one twice, or with all turned inwards is no solid.
