@@ -10,7 +10,7 @@ use sweepsim_dexel::{MeshError, TriangleSoup};
 
 use super::scan::{Scan, at};
 use super::styles::{FileBody, FileFace};
-use super::{StepBody, StepFace, StepPart, audit, build, styles, units};
+use super::{StepBody, StepFace, StepPart, audit, build, seams, styles, units};
 use crate::error::{FormatError, Problem};
 
 /// The stack of the thread that reads: the library follows references one call within another.
@@ -62,6 +62,7 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
     let mut model = Model::default();
     let roots = step::read_assembly(&mut model, &mut &rewritten[..])
         .map_err(|error| error_at(&scan, text, &error.to_string(), Some(&exchange)))?;
+    seams::add(&mut model, &roots, &exchange).map_err(|error| failed(&error))?;
     let build::Found {
         bodies: placed,
         deviation,

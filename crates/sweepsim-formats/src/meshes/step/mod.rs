@@ -22,6 +22,8 @@ mod kernel;
 #[cfg(feature = "step")]
 mod scan;
 #[cfg(feature = "step")]
+mod seams;
+#[cfg(feature = "step")]
 mod styles;
 #[cfg(feature = "step")]
 mod tori;

@@ -137,8 +137,8 @@ impl Scan {
         Some(attributes(text, range).into_iter().map(|range| &text[range]).collect())
     }
 
-    /// The text for the library. Each face's name becomes its number, as `#12`, which the library hands through with
-    /// the face; a solid with voids becomes an entity of two types, and a product definition with documents one
+    /// The text for the library. Each name of a face or an edge becomes its number, as `#12`, which the library hands
+    /// through with it; a solid with voids becomes an entity of two types, and a product definition with documents one
     /// without.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ impl Scan {
             let keyword = self.keywords[k].clone();
             let short = || at(text, statement.clone(), format!("#{number} has too few attributes"));
             match &text[keyword.clone()] {
-                b"ADVANCED_FACE" | b"FACE_SURFACE" => {
+                b"ADVANCED_FACE" | b"FACE_SURFACE" | b"EDGE_CURVE" => {
                     let name = attributes(text, keyword.end..statement.end)
                         .into_iter()
                         .next()

@@ -1,6 +1,7 @@
 //! STEP files: shapes whose measures are known, and files with a fault.
 
 mod faults;
+mod seams;
 mod surfaces;
 mod writer;
 
