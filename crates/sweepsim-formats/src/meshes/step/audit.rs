@@ -17,7 +17,7 @@ const MOST_OCCURRENCES: u64 = 100_000;
 const DEEPEST: usize = 60;
 
 /// Solids and items that are not read. A file with one of them has no B-rep of it.
-const UNREAD: [&str; 20] = [
+const UNREAD: [&str; 18] = [
     "SOLID_REPLICA",
     "CSG_SOLID",
     "BOOLEAN_RESULT",
@@ -35,8 +35,6 @@ const UNREAD: [&str; 20] = [
     "SPHERE",
     "TORUS",
     "POLY_LOOP",
-    "TESSELLATED_SOLID",
-    "TESSELLATED_SHELL",
     "SUBFACE",
 ];
 

@@ -10,7 +10,7 @@ use sweepsim_dexel::{MeshError, TriangleSoup};
 
 use super::scan::{Scan, at};
 use super::styles::{FileBody, FileFace};
-use super::{StepBody, StepFace, StepPart, audit, build, seams, styles, units};
+use super::{StepBody, StepFace, StepPart, audit, build, copies, seams, styles, units};
 use crate::error::{FormatError, Problem};
 
 /// The stack of the thread that reads: the library follows references one call within another.
@@ -55,6 +55,7 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
     let exchange = step::exchange_of(&rewritten).map_err(|error| failed(&error))?;
     let unit = units::length(&exchange).map_err(refused)?;
     audit::check(&exchange).map_err(refused)?;
+    let copies = copies::count(&exchange).map_err(refused)?;
     let (file_bodies, file_faces) = styles::bodies(&exchange);
     audit::open_solid(&exchange, &file_bodies, &file_faces).map_err(refused)?;
 
@@ -97,9 +98,21 @@ fn read(text: &[u8], chord: f64) -> Result<StepPart, FormatError> {
             unit,
             chord,
             deviation,
+            notes: tessellated(copies),
             ..StepPart::default()
         },
     )
+}
+
+/// What is said of tessellated solids that are beside boundary representations of the same parts.
+fn tessellated(copies: usize) -> Vec<String> {
+    match copies {
+        0 => Vec::new(),
+        1 => vec!["left out: a tessellated solid, as its part has a boundary representation".into()],
+        _ => vec![format!(
+            "left out: {copies} tessellated solids, as their parts have boundary representations"
+        )],
+    }
 }
 
 /// A file without products has one of all bodies: the library numbers the faces of products only.

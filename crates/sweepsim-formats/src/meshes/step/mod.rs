@@ -14,6 +14,8 @@ mod audit;
 #[cfg(feature = "step")]
 mod build;
 #[cfg(feature = "step")]
+mod copies;
+#[cfg(feature = "step")]
 mod deviation;
 #[cfg(feature = "step")]
 mod fill;

@@ -7,7 +7,7 @@ use super::audit::{Refused, missing};
 /// The most units that are built on one another.
 const MOST_LINKS: usize = 60;
 
-/// Millimetres per unit of length, as every context of the file says.
+/// Millimetres per unit of length, as every context of the file says in which there are shapes, and the first one.
 pub(super) fn length(x: &Exchange) -> Result<f64, Refused> {
     let mut length: Option<(f64, usize)> = None;
     let mut angle: Option<(f64, usize)> = None;
@@ -27,7 +27,7 @@ pub(super) fn length(x: &Exchange) -> Result<f64, Refused> {
             };
             let value = factor(x, unit, what, MOST_LINKS)?;
             match *known {
-                Some((other, at)) if (value - other).abs() > 1e-9 * other => {
+                Some((other, at)) if (value - other).abs() > 1e-9 * other && has_shapes(x, context) => {
                     let message =
                         format!("the unit of {what} differs from that of #{at}: expected one for the whole file");
                     return Err((context, message));
@@ -51,6 +51,24 @@ pub(super) fn length(x: &Exchange) -> Result<f64, Refused> {
         )
     };
     Ok(length.ok_or_else(none)?.0)
+}
+
+/// Whether a context is one of shapes, or of nothing: colours and texts have contexts of their own.
+fn has_shapes(x: &Exchange, context: usize) -> bool {
+    let mut is_used = false;
+    for instance in x.ids().filter_map(|number| x.get(number).ok()) {
+        let refers = |values: &[Value]| values.iter().any(|value| value.as_reference() == Some(context));
+        if instance.records().any(|(_, values)| refers(values)) {
+            is_used = true;
+            if instance
+                .records()
+                .any(|(name, _)| name.ends_with("SHAPE_REPRESENTATION"))
+            {
+                return true;
+            }
+        }
+    }
+    !is_used
 }
 
 /// Millimetres or radians per unit.

@@ -203,6 +203,22 @@ fn units_that_disagree_are_refused() {
         message.contains("the unit of length differs from that of #"),
         "{message}"
     );
+    // Colours say nothing of lengths, but what is placed by a context does.
+    let styled = |kind: &str| {
+        let user = format!("#902={kind}('',(),#901);\nENDSEC;\nEND-");
+        inches.replace("ENDSEC;\nEND-", &other.replace("ENDSEC;\nEND-", &user))
+    };
+    let part = parse_step(
+        styled("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION").as_bytes(),
+        CHORD,
+    );
+    let expected = parse_step(inches.as_bytes(), CHORD).unwrap();
+    assert_eq!(part.unwrap().mesh, expected.mesh);
+    let message = refused(&styled("SHAPE_REPRESENTATION"));
+    assert!(
+        message.contains("the unit of length differs from that of #"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -281,6 +297,36 @@ fn sheets_are_never_solids() {
     assert_eq!(part.mesh.triangles.len(), 12);
     part.mesh.soup().unwrap().check_closed().unwrap();
     assert_eq!(part.notes, ["left out: a sheet of 5 faces, as it encloses nothing"]);
+}
+
+/// A tessellated solid is another form of a part, or all that there is of one: then the file is not read as if it were
+/// whole.
+#[test]
+fn tessellated_solids_are_left_out_beside_others() {
+    let cube = cube();
+    let representation = cube.find("=SHAPE_REPRESENTATION(").unwrap();
+    let number = cube[..representation].rsplit('#').next().unwrap();
+    let with_solid = |more: &str| {
+        let own = "#900=TESSELLATED_SOLID('',(),$);\n#901=TESSELLATED_SHAPE_REPRESENTATION('',(#900),#3);\n";
+        cube.replace("ENDSEC;\nEND-", &format!("{own}{more}\nENDSEC;\nEND-"))
+    };
+    let told = "left out: a tessellated solid, as its part has a boundary representation";
+    let linked = format!("#902=SHAPE_REPRESENTATION_RELATIONSHIP('','',#{number},#901);");
+    let part = parse_step(with_solid(&linked).as_bytes(), CHORD).unwrap();
+    assert_eq!(
+        (part.mesh.triangles.len(), &part.notes[..]),
+        (12, &[told.to_owned()][..])
+    );
+    let moved = format!(
+        "#902=(REPRESENTATION_RELATIONSHIP('','',#{number},#901)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#3)SHAPE_REPRESENTATION_RELATIONSHIP());"
+    );
+    for alone in ["", &moved] {
+        let message = refused(&with_solid(alone));
+        assert!(
+            message.contains("#900 is a TESSELLATED_SOLID") || message.contains("#902 moves a shape"),
+            "{message}"
+        );
+    }
 }
 
 /// Random bytes changed, and the text cut anywhere: an error or a part that closes, never a panic.

@@ -17,6 +17,9 @@ enum Side {
 
 use Side::*;
 
+/// A solid's name, sides, rims and volume.
+type Case = (&'static str, Vec<Side>, Vec<[f64; 2]>, f64);
+
 /// A turned solid: the sides of a profile that has the material to its left as it goes, and the rims (radius, height)
 /// between them; poles have no radius. `angles`: where the rims begin.
 fn turned(sides: &[Side], rims: &[[f64; 2]], angles: &[f64]) -> String {
@@ -84,7 +87,7 @@ fn holds(name: &str, part: &StepPart, truth: f64, chord: f64) {
 #[test]
 fn rims_alone_bound_faces() {
     let half = 8.0 / (3.0 * PI);
-    let cases: [(&str, Vec<Side>, Vec<[f64; 2]>, f64); 9] = [
+    let cases: [Case; 9] = [
         (
             "bar",
             vec![Level(0.0, false), Cylinder(5.0, true), Level(8.0, true)],
