@@ -98,7 +98,7 @@ fn is_turned(
     })
 }
 
-/// Adds a seam to a face whose boundaries go around it, or leaves it as it is. `turned`: whether they run the wrong way.
+/// Adds a seam to a face whose boundaries go around it, or leaves it as it is. `turned`: they run the wrong way.
 fn add_to(model: &mut Model, face: Shape, turned: bool) -> kentron::Result<()> {
     let Some(place) = Around::of(model, face).and_then(|around| around.place()) else {
         return Ok(());
