@@ -29,6 +29,9 @@ pub(crate) struct Surface {
 }
 
 const LEAF: usize = 4;
+/// A place beside a triangle is so far from its edges, of its size, and so far outside, of the size of all.
+const WITHIN: f64 = 1e-7;
+const BESIDE: f64 = 1e-12;
 /// Rays go these ways, until one meets no edge.
 const WAYS: [V3; 5] = [
     [0.537, 0.611, 0.581],
@@ -138,9 +141,10 @@ impl Surface {
         Some(winding)
     }
 
-    /// A bound from below of the distance of a point from the surface, and about the nearest point of it.
-    pub fn nearest(&self, point: &V3) -> (f64, V3) {
-        let mut best = (f64::INFINITY, *point);
+    /// A bound from below of the distance of a point from the surface, about the nearest point of it, and the triangle
+    /// that has it.
+    pub fn nearest(&self, point: &V3) -> (f64, V3, u32) {
+        let mut best = (f64::INFINITY, *point, 0);
         let mut open = vec![(0.0, 0_usize)];
         while let Some((before, number)) = open.pop() {
             if before >= best.0 {
@@ -153,7 +157,7 @@ impl Surface {
                     let near = nearest_of(corners, point);
                     let distance = apart_down(corners, point, &near);
                     if distance < best.0 {
-                        best = (distance, near);
+                        best = (distance, near, *triangle);
                     }
                 }
                 continue;
@@ -166,6 +170,17 @@ impl Surface {
             open.extend(halves);
         }
         best
+    }
+}
+
+impl Surface {
+    /// A place just outside of a triangle, beside a point of it: as far within its edges as it is large, almost.
+    pub fn beside(&self, near: &V3, triangle: u32) -> Option<V3> {
+        let [a, b, c] = &self.triangles[triangle as usize];
+        let normal = unit(&cross(&sub(b, a), &sub(c, a)))?;
+        let middle = scaled(&add(a, &add(b, c)), 1.0 / 3.0);
+        let within = add(near, &scaled(&sub(&middle, near), WITHIN));
+        Some(add(&within, &scaled(&normal, BESIDE * self.size)))
     }
 }
 

@@ -1,8 +1,11 @@
 //! Tests of what is not public.
 
+use crate::depth::Cell;
+use crate::height::Patch;
 use crate::scene::Curve;
 use crate::surface::Surface;
 use crate::tool::{Body, bodies};
+use crate::vector::{dot, unit};
 use std::f64::consts::FRAC_PI_2;
 
 #[test]
@@ -13,12 +16,65 @@ fn a_tetrahedron_has_an_inside() {
     assert_eq!(surface.is_outside(&[0.1, 0.1, 0.1]), Some(false));
     assert_eq!(surface.is_outside(&[0.5, 0.5, 0.5]), Some(true));
     assert_eq!(surface.is_outside(&[-0.1, 0.1, 0.1]), Some(true));
-    let (distance, near) = surface.nearest(&[0.1, 0.2, 0.3]);
+    let (distance, near, _) = surface.nearest(&[0.1, 0.2, 0.3]);
     assert!(distance <= 0.1 && distance > 0.1 - 1e-14 && near == [0.0, 0.2, 0.3]);
     assert!(Surface::new(&triangles[1..]).is_err());
     // Inside out: nothing is inside.
     let surface = Surface::new(&triangles.map(|[a, b, c]| [a, c, b])).expect("closed");
     assert_eq!(surface.is_outside(&[0.1, 0.1, 0.1]), Some(true));
+}
+
+/// A block of 8 with a thin notch that leans: its edge is the nearest of what is below it, and what is beyond that is
+/// inside, too.
+#[test]
+fn depths_end_in_notches_that_lean() {
+    let outline = [
+        [-4.0, -4.0],
+        [4.0, -4.0],
+        [4.0, 4.0],
+        [3.05, 4.0],
+        [0.0, 0.0],
+        [3.0, 4.0],
+        [-4.0, 4.0],
+    ];
+    let at = |k: usize, y: f64| [outline[k % 7][0], y, outline[k % 7][1]];
+    let mut triangles = Vec::new();
+    for k in 0..7 {
+        let [a, b, c, d] = [at(k, -4.0), at(k + 1, -4.0), at(k + 1, 4.0), at(k, 4.0)];
+        triangles.extend([[a, c, b], [a, d, c]]);
+        if ![3, 4].contains(&k) {
+            triangles.extend([[at(4, -4.0), a, b], [at(4, 4.0), c, d]]);
+        }
+    }
+    let surface = Surface::new(&triangles).expect("closed");
+    let middle = [-1.0, 0.0, 0.2];
+    assert_eq!(surface.is_outside(&middle), Some(false));
+    let cell = Cell::root(middle, 0.125, 0.1, &surface);
+    let depth = 1.04_f64.sqrt();
+    let bound = cell.depth_by_middle(&surface) - 3_f64.sqrt() * 0.125;
+    assert!(depth <= bound && bound < depth + 1e-6, "{bound}");
+}
+
+/// Two opposite normals are divided on the side of the third; without one, nobody knows where.
+#[test]
+fn opposite_normals_are_divided_by_the_third() {
+    let normal = unit(&[0.6, 0.64, 0.48]).expect("a direction");
+    let third = unit(&[0.3, -0.5, 0.2]).expect("a direction");
+    for off in [0.0, 1e-14, 1e-9] {
+        let opposite = unit(&[-normal[0] + off, -normal[1], -normal[2] - off]).expect("a direction");
+        let patch = |normals: &[[f64; 3]]| Patch {
+            corners: vec![[1.0, 2.0, 3.0]],
+            normals: normals.to_vec(),
+            is_flat: false,
+        };
+        assert!(patch(&[normal, opposite]).halves(None, [0, 1]).is_none());
+        let halves = patch(&[normal, opposite, third]).halves(None, [0, 1]).expect("a side");
+        let [first, second] = halves.map(|half| half.normals);
+        let middle = first[0];
+        assert!(second == [normal, middle, third] && first == [middle, opposite, third]);
+        // Across both, and on the side of the third.
+        assert!(dot(&middle, &normal).abs() < 1e-8 && dot(&middle, &third) > 0.1);
+    }
 }
 
 fn line(from: [f64; 2], to: [f64; 2]) -> Curve {

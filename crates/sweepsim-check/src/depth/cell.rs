@@ -12,7 +12,7 @@
 //! the error, which stays much below the difference between `CLIP` and `AROUND`.
 
 use crate::surface::Surface;
-use crate::vector::{EPS, MORE, V3, dot_up, norm_up, scaled, sub, sum_up, unit};
+use crate::vector::{EPS, MORE, V3, add, dot_up, norm_up, scaled, sub, sum_up, unit};
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
@@ -225,22 +225,21 @@ impl Cell {
 
     /// No point of the cell is deeper: depths change no faster than places.
     ///
-    /// From a middle inside, a place just beyond the nearest of the surface is tried: if it is outside, the
-    /// middle is no deeper than it is far. From one outside, all nearer than the surface are outside.
+    /// From a middle inside, a place just beyond the nearest of the surface is tried, and one beside its triangle, where
+    /// what is nearest is the edge of a notch that leans: if it is outside, the middle is no deeper than it is far. From
+    /// one outside, all nearer than the surface are outside.
     pub fn depth_by_middle(&self, surface: &Surface) -> f64 {
         *self.middle.get_or_init(|| {
             let diagonal = 3_f64.sqrt() * self.half * MORE;
-            let (distance, near) = surface.nearest(&self.centre);
+            let (distance, near, triangle) = surface.nearest(&self.centre);
             match surface.is_outside(&self.centre) {
                 Some(true) => diagonal - distance,
                 Some(false) => {
                     let way = sub(&near, &self.centre);
-                    let beyond = 1e-11 * surface.size;
-                    let place = unit(&way).map(|unit| {
-                        let far = norm_up(&way) + beyond;
-                        std::array::from_fn(|k| self.centre[k] + unit[k] * far)
-                    });
-                    let outside = place.filter(|place| surface.is_outside(place) == Some(true));
+                    let far = norm_up(&way) + 1e-11 * surface.size;
+                    let beyond = unit(&way).map(|unit| add(&self.centre, &scaled(&unit, far)));
+                    let places = [beyond, surface.beside(&near, triangle)].into_iter().flatten();
+                    let outside = { places }.find(|place| surface.is_outside(place) == Some(true));
                     outside.map_or(f64::INFINITY, |place| norm_up(&sub(&place, &self.centre)) + diagonal)
                 }
                 None => f64::INFINITY,

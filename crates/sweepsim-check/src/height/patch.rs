@@ -21,6 +21,9 @@ use std::collections::HashMap;
 
 /// Angles of this size do not count.
 const FLAT: f64 = 1e-9;
+/// Normals whose sum is shorter are opposite. Angles of this size are within the margin, and so is what the rounding of
+/// a sum that is not shorter does to its direction.
+const OPPOSITE: f64 = 2e-8;
 
 /// The points at a distance from the hull of some corners, along unit vectors in the cone of some normals.
 #[derive(Clone, Debug)]
@@ -143,7 +146,12 @@ impl Patch {
         // Three corners, or three normals, are the corners of a triangle: its parts cover it. More are not.
         let middle = match part {
             Some(part) => add(&p, &scaled(&sub(&q, &p), part)),
-            None => unit(&add(&p, &q)).filter(|_| norm(&add(&p, &q)) > 1e-6)?,
+            None if norm(&add(&p, &q)) > OPPOSITE => unit(&add(&p, &q))?,
+            // What is between all of them is on the side of the one that is across.
+            None => {
+                let across = |n: &V3| Some(sub(n, &scaled(&p, dot(n, &p)))).filter(|across| norm(across) > 1e-3);
+                unit(&self.normals.iter().find_map(across)?)?
+            }
         };
         let half = |end: usize| {
             let mut half = self.clone();

@@ -42,6 +42,8 @@ const THIN: f64 = 4096.0;
 const APART: f64 = 0.02;
 /// Steps of the search for where a way is no longer free: so many digits, and the part is a short number.
 const PARTINGS: usize = 16;
+/// Normals whose sum is shorter are opposite: for a checker, too.
+const OPPOSITE: f64 = 2e-8;
 /// Normals that differ less are the same, for what a patch is: every test of it has a larger margin. A checker takes
 /// twice as much.
 pub(super) const SAME: f64 = 5e-10;
@@ -204,8 +206,8 @@ impl Patch {
                 (Halved::Corners(ends, part), ends.map(half))
             });
         }
-        let middle = (self.normals[k] + self.normals[l]).try_normalize(1e-9);
-        // Opposite normals: by way of the third, or of any direction across.
+        let middle = (self.normals[k] + self.normals[l]).try_normalize(OPPOSITE);
+        // Opposite normals: by way of the third, or of any direction across, which no checker believes.
         let middle = middle.unwrap_or_else(|| {
             let own = self.normals[k];
             let across = |other: &Vector3<f64>| (other - own * own.dot(other)).try_normalize(1e-3);

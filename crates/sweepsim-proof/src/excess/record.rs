@@ -9,7 +9,7 @@
 //! | 2 | Nearer to a triangle: its number. |
 //! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
 //! | 10, 11, 12 | Parted between the corners 0 and 1, 0 and 2, or 1 and 2: at which part of the way, an `f32`. |
-//! | 13, 14, 15 | Halved between two normals. |
+//! | 13, 14, 15 | Halved between two normals; of opposite ones, by way of the third. |
 //! | 16 | For any three of its normals. |
 //! | 17 | For any two of its normals and the first. |
 

@@ -4,6 +4,7 @@ mod apart;
 mod certificates;
 mod clear;
 mod forged;
+mod jagged;
 mod process;
 mod recall;
 mod scenes;
