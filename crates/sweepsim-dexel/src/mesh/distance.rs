@@ -292,7 +292,7 @@ impl DistanceTo {
     ) -> Option<(usize, [f64; 3], NearestOn)> {
         let mut best = reach * reach;
         let mut found: Option<(usize, [f64; 3], NearestOn)> = None;
-        // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
+        // Each level leaves one node behind; few trees have more.
         let mut open = SmallVec::<[(f64, u32); 64]>::new();
         open.extend(self.prepared.nodes.first().map(|root| (root.distance_squared(p), 0)));
         while let Some((away, number)) = open.pop() {

@@ -1,7 +1,9 @@
 //! A tree of boxes over triangles.
 
+mod halves;
 mod parts;
 
+use halves::{Hull, halved};
 use parts::TrianglePart;
 
 /// Triangles of a leaf of the tree.
@@ -46,30 +48,18 @@ fn grown(parts: &mut [TrianglePart]) -> Vec<TreeNode> {
 /// Builds the tree over some parts of faces, the first of which has the place `first` in the order of all.
 fn split(nodes: &mut Vec<TreeNode>, parts: &mut [TrianglePart], first: usize) {
     let number = nodes.len();
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for part in &*parts {
-        for k in 0..3 {
-            (low[k], high[k]) = (low[k].min(part.low[k]), high[k].max(part.high[k]));
-        }
-    }
+    let mut hull = Hull::NOTHING;
+    parts.iter().for_each(|part| hull.add(part.low, part.high));
     nodes.push(TreeNode {
-        low,
-        high,
+        low: hull.low,
+        high: hull.high,
         first: first as u32,
         count: parts.len() as u32,
     });
     if parts.len() <= LEAF {
         return;
     }
-    // Not of the boxes: what is long along an axis may all have one place there.
-    let extent = [0, 1, 2].map(|k| {
-        let places = parts.iter().map(|part| part.place[k]);
-        let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], c| [a.min(c), b.max(c)]);
-        ends[1] - ends[0]
-    });
-    let axis = (0..3).fold(0, |a, k| if extent[k] > extent[a] { k } else { a });
-    let middle = parts.len() / 2;
-    parts.select_nth_unstable_by(middle, |a, b| a.place[axis].total_cmp(&b.place[axis]));
+    let middle = halved(parts);
     let (lower, upper) = parts.split_at_mut(middle);
     let second;
     if upper.len() > TASK {

@@ -18,7 +18,9 @@ pub(super) struct TrianglePart {
 /// A triangle is cut if half the surface of its box is more than so many times its area. Of half a rectangle across an
 /// axis, it is twice the area.
 const EMPTY: f64 = 32.0;
-/// Parts of such triangles on average, and the most of one and of all.
+/// So many parts for one whose box is just as empty as that, and twice as many where it is twice as empty, on average up
+/// to a number; and the most of one and of all.
+const PARTS: f64 = 12.0;
 const EACH: f64 = 64.0;
 const MOST: f64 = 512.0;
 const ALL: f64 = (1 << 20) as f64;
@@ -34,17 +36,17 @@ fn hull(points: impl Iterator<Item = [f64; 3]>) -> [[f64; 3]; 2] {
     })
 }
 
-/// The root of half the surface of a triangle's box, if the triangle is to be cut, otherwise 0.
-fn width(triangle: &Triangle) -> f64 {
+/// The root of half the surface of a triangle's box, and into how many parts it is worth to be cut; of others, 0.
+fn width(triangle: &Triangle) -> [f64; 2] {
     let [low, high] = hull(triangle.iter().copied());
     let [a, b, c] = [0, 1, 2].map(|k| high[k] - low[k]);
     let surface = a * b + b * c + c * a;
     let normal = crate::vector::normal_of(*triangle);
     let area = 0.5 * crate::vector::length(normal);
     if surface > EMPTY * area && surface.is_finite() {
-        surface.sqrt()
+        [surface.sqrt(), (PARTS * surface / (EMPTY * area)).min(EACH)]
     } else {
-        0.0
+        [0.0; 2]
     }
 }
 
@@ -52,16 +54,16 @@ fn width(triangle: &Triangle) -> f64 {
 ///
 /// The sum of the boxes' surfaces is least if there are as many parts of a triangle as the root of its own is large.
 pub(super) fn of(triangles: impl Iterator<Item = Triangle> + Clone) -> Vec<TrianglePart> {
-    let (mut sum, mut cut, mut count) = (0.0, 0.0_f64, 0);
-    for width in triangles.clone().map(|triangle| width(&triangle)) {
+    let (mut sum, mut all, mut count) = (0.0, 0.0_f64, 0);
+    for [width, share] in triangles.clone().map(|triangle| width(&triangle)) {
         sum += width;
-        cut += f64::from(u8::from(width > 0.0));
+        all += share;
         count += 1;
     }
-    let all = (EACH * cut).min(ALL);
+    let all = all.min(ALL);
     let mut parts = Vec::with_capacity(count + all as usize);
     for (face, triangle) in triangles.enumerate() {
-        let width = width(&triangle);
+        let [width, _] = width(&triangle);
         let share = if width > 0.0 {
             (all * width / sum).clamp(1.0, MOST) as usize
         } else {
