@@ -11,8 +11,8 @@ use sweepsim_nc::{Controller, Format};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Programs")]
 pub(crate) struct DialectOptions {
-    /// The control that the program is written for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: as the
-    /// program says].
+    /// The control that the program is written for: linuxcnc, fanuc, haas, siemens, heidenhain, grbl or okuma [default:
+    /// as the program says].
     #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
     pub controller: Option<String>,
     /// The machine: a machine.ron, or the name of a ready one, like trunnion-ac.
@@ -41,7 +41,7 @@ pub(crate) struct DialectOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "G-code that is written")]
 pub(crate) struct WritingOptions {
-    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: siemens for .mpf,
+    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain, grbl or okuma [default: siemens for .mpf,
     /// heidenhain for .h, else linuxcnc].
     #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
     pub dialect: Option<String>,

@@ -28,10 +28,13 @@ pub fn counted(number: u64, one: &str) -> String {
     format!("{} {many}", count(number))
 }
 
-/// A measure that is less is none: none of its twelve decimals would be seen.
+/// A measure that is less is none.
 const LEAST: f64 = 5e-13;
 
-/// A measure with five significant digits, and thousands separators.
+/// Measures that are less are written with a power of ten.
+const SMALL: f64 = 1e-6;
+
+/// A measure with five significant digits, and thousands separators; a very small one with two.
 #[must_use]
 pub fn measure(value: f64) -> String {
     if !value.is_finite() {
@@ -40,11 +43,14 @@ pub fn measure(value: f64) -> String {
     if value.abs() < LEAST {
         return "0".to_owned();
     }
+    let sign = if value < 0.0 { "−" } else { "" };
+    if value.abs() < SMALL {
+        return format!("{sign}{:.1e}", value.abs());
+    }
     let whole = value.abs().log10().floor();
     let decimals = (4.0 - whole).clamp(0.0, 12.0) as usize;
     let text = format!("{:.decimals$}", value.abs());
     let (front, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
-    let sign = if value < 0.0 { "−" } else { "" };
     match front.parse() {
         Ok(front) => format!("{sign}{}{rest}", count(front)),
         Err(_) => format!("{sign}{text}"),
@@ -55,7 +61,7 @@ pub fn measure(value: f64) -> String {
 #[must_use]
 pub fn length(value: f64) -> String {
     let text = measure(value);
-    match text.contains('.') {
+    match text.contains('.') && !text.contains('e') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
     }
@@ -380,12 +386,17 @@ mod tests {
         assert_eq!(measure(-0.012_345_67), "−0.012346");
         assert_eq!(measure(12.0), "12.000");
         assert_eq!([0.0, -5.2e-15, 4e-13].map(measure), ["0"; 3]);
-        assert_eq!(measure(-6e-13), "−0.000000000001");
+        assert_eq!(measure(-6e-13), "−6.0e-13");
+        assert_eq!(
+            (measure(5.051e-9), measure(1e-6)),
+            ("5.1e-9".into(), "0.0000010000".into())
+        );
         assert_eq!(measure(f64::NAN), "NaN");
         assert_eq!(
             [12.0, 0.5, -90.25, 1234.0, 0.0].map(length),
             ["12", "0.5", "−90.25", "1,234", "0"]
         );
+        assert_eq!([1e-6, 1e-10].map(length), ["0.000001", "1.0e-10"]);
         assert_eq!(seconds(0.0123), "12 ms");
         assert_eq!([5.25, 75.4, 3725.0].map(clock), ["5.2 s", "1 min 15 s", "1 h 2 min"]);
         assert_eq!(bytes(1_500_000), "1.5 MB");
