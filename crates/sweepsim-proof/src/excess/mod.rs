@@ -11,6 +11,7 @@
 mod bounding;
 mod found;
 mod known;
+mod order;
 mod patch;
 mod record;
 mod removed;

@@ -4,6 +4,7 @@ mod look;
 
 use super::found::Found;
 use super::known::{Blocks, nothing};
+use super::order::along_a_curve;
 use super::record::{Parts, PatchTrees, Record, Step, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
@@ -122,7 +123,13 @@ pub fn highest_from(
         let surface = Surface::new(&target.triangles);
         parts(&surface, (surface.squares / PARTS).sqrt(), recorded)
     };
-    let (motions, (patches, steps)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, patches);
+    let ordered = || {
+        let (patches, steps) = patches();
+        let middle = |number| patches.get(number).middle().0;
+        let order = along_a_curve(patches.len(), middle, target.size);
+        (patches, steps, order)
+    };
+    let (motions, (patches, steps, order)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, ordered);
     let courses = || cutters.iter().zip(&motions);
     let size = courses().fold(target.size, |size, (cutter, all)| {
         let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
@@ -141,6 +148,7 @@ pub fn highest_from(
         before: Before::new(stock, margin)?,
         removed,
         patches,
+        order,
         steps,
         numbers: if recorded {
             numbers.collect()
@@ -192,6 +200,9 @@ struct Scene<'a> {
     before: Before,
     removed: Removed<'a>,
     patches: Parts,
+    /// Their numbers, in the order in which they are looked at: what is looked at together lies together, and asks for
+    /// few of the motions.
+    order: Vec<usize>,
     /// How the patches make up the surface.
     steps: Vec<Step>,
     /// The numbers of triangles by their corners, for records.
@@ -267,7 +278,7 @@ impl Scene<'_> {
     ) -> Option<(Found, Vec<Record>)> {
         let mut settled = Found::default();
         let mut records = vec![Record::default(); if self.recorded { self.patches.len() } else { 0 }];
-        let mut open: Vec<usize> = (0..self.patches.len()).collect();
+        let mut open = self.order.clone();
         let mut still: BTreeMap<usize, Found> = BTreeMap::new();
         // Short looks everywhere, then what is left.
         for look in 0..MOST_LOOKS {

@@ -1,7 +1,7 @@
 //! How near bodies come to a solid, at every time.
 
 use super::gouge::{Limits, Tree, parts, trees};
-use super::known::{Asking, Part};
+use super::known::{Asking, Part, share};
 use super::near::{Found, enough};
 use super::nearest::Search;
 use crate::motion::{Cutter, Run};
@@ -68,7 +68,7 @@ pub fn closest_from(
     for number in 0..2 {
         let pairs = match number {
             0 => FIRST_LOOK,
-            _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
+            _ => share(limits.pairs, open.len(), LEAST_PAIRS),
         };
         let mut question = Writing::default();
         question.bytes(b"closest");

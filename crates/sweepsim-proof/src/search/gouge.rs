@@ -2,7 +2,7 @@
 
 use super::deepest::Search;
 use super::found::{Found, Wanted, enough};
-use super::known::{Asking, Part};
+use super::known::{Asking, Part, share};
 use crate::motion::{Cutter, Run};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
@@ -125,7 +125,7 @@ pub fn deepest_from(
         let asked = Asked {
             pairs: match look {
                 0 => FIRST_LOOK,
-                _ => (limits.pairs / open.len().max(1)).max(LEAST_PAIRS),
+                _ => share(limits.pairs, open.len(), LEAST_PAIRS),
             },
             width: limits.width.max(if look < 2 && known < limits.depth {
                 ROOM * enough

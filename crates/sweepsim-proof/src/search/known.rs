@@ -19,6 +19,14 @@ pub(super) struct Asking<'a> {
 /// A part of the work: some moves of a path.
 pub(super) type Part = (usize, Range<usize>);
 
+/// How much each of some parts may cost, at least so much. A program that is a little longer, or shorter, asks the same
+/// of most parts: shares are numbers of four digits in binary, and then zeros.
+pub(super) fn share(all: usize, parts: usize, least: usize) -> usize {
+    let each = (all / parts.max(1)).max(least).max(1);
+    let zeros = each.ilog2().saturating_sub(3);
+    (each >> zeros << zeros).max(least)
+}
+
 impl Asking<'_> {
     fn digest(&self, parts: &[Part]) -> QuestionDigest {
         let mut question = self.question.clone();
@@ -61,5 +69,27 @@ impl Asking<'_> {
             }
         };
         target.each(parts, (known, keep), look)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share;
+
+    /// As `verify` asks: so much in all, and so much for each move.
+    #[test]
+    fn programs_of_nearly_the_same_length_share_alike() {
+        let of = |moves: usize| share(500_000 + 400 * moves, moves.div_ceil(64), 10_000);
+        let mut others = 0;
+        for moves in (1_000..200_000).step_by(37) {
+            let own = of(moves);
+            let even = (500_000 + 400 * moves) / moves.div_ceil(64);
+            assert!(
+                (own <= even && 8 * own >= 7 * even) || own == 10_000,
+                "{moves}: {own} of {even}"
+            );
+            others += usize::from(of(moves + 1) != own) + usize::from(of(moves - 1) != own);
+        }
+        assert!(others < 20, "{others}");
     }
 }
