@@ -225,9 +225,9 @@ impl Cell {
 
     /// No point of the cell is deeper: depths change no faster than places.
     ///
-    /// From a middle inside, a place just beyond the nearest of the surface is tried, and one beside its triangle, where
-    /// what is nearest is the edge of a notch that leans: if it is outside, the middle is no deeper than it is far. From
-    /// one outside, all nearer than the surface are outside.
+    /// From a middle inside, a place just beyond the nearest of the surface is tried, and one beside its triangle,
+    /// where what is nearest is the edge of a notch that leans: if it is outside, the middle is no deeper than it is
+    /// far. From one outside, all nearer than the surface are outside.
     pub fn depth_by_middle(&self, surface: &Surface) -> f64 {
         *self.middle.get_or_init(|| {
             let diagonal = 3_f64.sqrt() * self.half * MORE;

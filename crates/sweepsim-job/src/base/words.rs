@@ -28,10 +28,8 @@ pub fn counted(number: u64, one: &str) -> String {
     format!("{} {many}", count(number))
 }
 
-/// A measure that is less is none.
+/// A measure that is less is none; and one that is less than this is written with a power of ten.
 const LEAST: f64 = 5e-13;
-
-/// Measures that are less are written with a power of ten.
 const SMALL: f64 = 1e-6;
 
 /// A measure with five significant digits, and thousands separators; a very small one with two.
@@ -387,10 +385,7 @@ mod tests {
         assert_eq!(measure(12.0), "12.000");
         assert_eq!([0.0, -5.2e-15, 4e-13].map(measure), ["0"; 3]);
         assert_eq!(measure(-6e-13), "−6.0e-13");
-        assert_eq!(
-            (measure(5.051e-9), measure(1e-6)),
-            ("5.1e-9".into(), "0.0000010000".into())
-        );
+        assert_eq!([5.051e-9, 1e-6].map(measure), ["5.1e-9", "0.0000010000"]);
         assert_eq!(measure(f64::NAN), "NaN");
         assert_eq!(
             [12.0, 0.5, -90.25, 1234.0, 0.0].map(length),
