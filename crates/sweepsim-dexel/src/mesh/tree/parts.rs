@@ -18,8 +18,8 @@ pub(super) struct TrianglePart {
 /// A triangle is cut if half the surface of its box is more than so many times its area. Of half a rectangle across an
 /// axis, it is twice the area.
 const EMPTY: f64 = 32.0;
-/// So many parts for one whose box is just as empty as that, and twice as many where it is twice as empty, on average up
-/// to a number; and the most of one and of all.
+/// So many parts for one whose box is just as empty as that, and twice as many where it is twice as empty, on average
+/// up to a number; and the most of one and of all.
 const PARTS: f64 = 12.0;
 const EACH: f64 = 64.0;
 const MOST: f64 = 512.0;
