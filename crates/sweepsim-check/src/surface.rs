@@ -29,7 +29,8 @@ pub(crate) struct Surface {
 }
 
 const LEAF: usize = 4;
-/// A place beside a triangle is so far from its edges, of its size, and so far outside, of the size of all.
+/// A place beside a triangle is by this part of the way to its middle within, and by this part of the size of all
+/// outside.
 const WITHIN: f64 = 1e-7;
 const BESIDE: f64 = 1e-12;
 /// Rays go these ways, until one meets no edge.
@@ -171,10 +172,8 @@ impl Surface {
         }
         best
     }
-}
 
-impl Surface {
-    /// A place just outside of a triangle, beside a point of it: as far within its edges as it is large, almost.
+    /// A place just outside of a triangle, beside a point of it and within its edges.
     pub fn beside(&self, near: &V3, triangle: u32) -> Option<V3> {
         let [a, b, c] = &self.triangles[triangle as usize];
         let normal = unit(&cross(&sub(b, a), &sub(c, a)))?;

@@ -55,25 +55,32 @@ fn depths_end_in_notches_that_lean() {
     assert!(depth <= bound && bound < depth + 1e-6, "{bound}");
 }
 
-/// Two opposite normals are divided on the side of the third; without one, nobody knows where.
+/// Two opposite normals are divided on the side of the third; without one, nobody knows where. Those of a thin wedge are
+/// divided beyond its edge, wherever the third one is.
 #[test]
 fn opposite_normals_are_divided_by_the_third() {
     let normal = unit(&[0.6, 0.64, 0.48]).expect("a direction");
     let third = unit(&[0.3, -0.5, 0.2]).expect("a direction");
-    for off in [0.0, 1e-14, 1e-9] {
+    for off in [0.0, 1e-14, 1e-9, 1e-7] {
         let opposite = unit(&[-normal[0] + off, -normal[1], -normal[2] - off]).expect("a direction");
         let patch = |normals: &[[f64; 3]]| Patch {
             corners: vec![[1.0, 2.0, 3.0]],
             normals: normals.to_vec(),
             is_flat: false,
         };
-        assert!(patch(&[normal, opposite]).halves(None, [0, 1]).is_none());
+        let sum = [0, 1, 2].map(|k| normal[k] + opposite[k]);
+        let beyond = unit(&sum).filter(|_| off > 1e-12);
+        let alone = patch(&[normal, opposite]).halves(None, [0, 1]);
+        assert_eq!(alone.map(|halves| halves[0].normals[0]), beyond);
         let halves = patch(&[normal, opposite, third]).halves(None, [0, 1]).expect("a side");
         let [first, second] = halves.map(|half| half.normals);
         let middle = first[0];
         assert!(second == [normal, middle, third] && first == [middle, opposite, third]);
-        // Across both, and on the side of the third.
-        assert!(dot(&middle, &normal).abs() < 1e-8 && dot(&middle, &third) > 0.1);
+        match beyond {
+            Some(beyond) => assert_eq!(middle, beyond),
+            // Across both, and on the side of the third.
+            None => assert!(dot(&middle, &normal).abs() < 1e-12 && dot(&middle, &third) > 0.1),
+        }
     }
 }
 

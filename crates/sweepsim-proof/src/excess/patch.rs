@@ -42,8 +42,8 @@ const THIN: f64 = 4096.0;
 const APART: f64 = 0.02;
 /// Steps of the search for where a way is no longer free: so many digits, and the part is a short number.
 const PARTINGS: usize = 16;
-/// Normals whose sum is shorter are opposite: for a checker, too.
-const OPPOSITE: f64 = 2e-8;
+/// Normals whose sum is shorter are opposite but for their rounding: for a checker, too.
+const OPPOSITE: f64 = 1e-11;
 /// Normals that differ less are the same, for what a patch is: every test of it has a larger margin. A checker takes
 /// twice as much.
 pub(super) const SAME: f64 = 5e-10;

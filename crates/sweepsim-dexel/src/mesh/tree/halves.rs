@@ -81,7 +81,7 @@ pub(super) fn halved(parts: &mut [TrianglePart]) -> usize {
         let [from, to] = ends[axis];
         let scale = STRIPS as f64 / (to - from);
         let is_below = |part: &TrianglePart| strip_of(part.place[axis], from, scale) < strip;
-        return sorted_by(parts, is_below);
+        return partitioned(parts, is_below);
     }
     let length = |k: usize| ends[k][1] - ends[k][0];
     let axis = (0..3).fold(0, |a, k| if length(k) > length(a) { k } else { a });
@@ -94,7 +94,7 @@ fn strip_of(place: f64, from: f64, scale: f64) -> usize {
 }
 
 /// Puts those for which something holds first, and tells how many they are.
-fn sorted_by(parts: &mut [TrianglePart], holds: impl Fn(&TrianglePart) -> bool) -> usize {
+fn partitioned(parts: &mut [TrianglePart], holds: impl Fn(&TrianglePart) -> bool) -> usize {
     let mut count = 0;
     for k in 0..parts.len() {
         if holds(&parts[k]) {

@@ -106,7 +106,7 @@ impl Around {
     }
 
     /// How far it is from a place on, less than a period.
-    pub fn from(&self, place: f64, to: f64) -> f64 {
+    fn ahead(&self, place: f64, to: f64) -> f64 {
         (to - place).rem_euclid(self.period)
     }
 
@@ -125,7 +125,7 @@ impl Around {
         // How far it is to the nearest one.
         let free = |place: f64| {
             let beside = holes.iter().map(|[low, high]| {
-                let ahead = self.from(place, *low);
+                let ahead = self.ahead(place, *low);
                 ahead.min(self.period - (ahead + high - low))
             });
             beside.fold(f64::INFINITY, f64::min)
@@ -151,7 +151,7 @@ impl Around {
     pub fn hole(&self, number: usize, least: [f64; 2]) -> Vec<Use> {
         let uses = &self.boundaries[number];
         let at = uses[0].ends()[0];
-        let along = least[0] + self.from(least[0], at[self.along]) - at[self.along];
+        let along = least[0] + self.ahead(least[0], at[self.along]) - at[self.along];
         let own = at[1 - self.along];
         let across = self
             .across
@@ -168,7 +168,7 @@ impl Around {
         }
         uses.iter().find_map(|own| {
             let beside = |t: f64| {
-                let ahead = self.from(place, own.at(t)[self.along]);
+                let ahead = self.ahead(place, own.at(t)[self.along]);
                 if ahead < 0.5 * self.period {
                     ahead
                 } else {
@@ -195,7 +195,7 @@ impl Around {
     }
 
     fn is_at(&self, at: f64, place: f64) -> bool {
-        let ahead = self.from(place, at);
+        let ahead = self.ahead(place, at);
         ahead.min(self.period - ahead) < SAME * self.period
     }
 

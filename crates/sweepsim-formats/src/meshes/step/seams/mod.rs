@@ -100,14 +100,18 @@ fn is_turned(
 
 /// Adds a seam to a face whose boundaries go around it, or leaves it as it is. `turned`: they run the wrong way.
 fn add_to(model: &mut Model, face: Shape, turned: bool) -> kentron::Result<()> {
-    let Some(place) = Around::of(model, face).and_then(|around| around.place()) else {
+    let Some(around) = Around::of(model, face) else {
         return Ok(());
     };
-    // Boundaries begin where the seam is.
-    while let Some((edge, t)) = Around::of(model, face).and_then(|around| {
-        let mut passed = around.ways.iter().filter_map(|way| around.passes(way.0, place));
-        passed.next()
-    }) {
+    let (Some(place), mut left) = (around.place(), around.ways.len()) else {
+        return Ok(());
+    };
+    // Boundaries begin where the seam is: each of them is divided once at most.
+    while let Some(around) = Around::of(model, face).filter(|_| left > 0) {
+        left -= 1;
+        let Some((edge, t)) = around.ways.iter().find_map(|way| around.passes(way.0, place)) else {
+            break;
+        };
         let Some((curve, _, _)) = model.edge_curve(edge) else {
             return Ok(());
         };
