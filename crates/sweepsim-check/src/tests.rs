@@ -55,8 +55,8 @@ fn depths_end_in_notches_that_lean() {
     assert!(depth <= bound && bound < depth + 1e-6, "{bound}");
 }
 
-/// Two opposite normals are divided on the side of the third; without one, nobody knows where. Those of a thin wedge are
-/// divided beyond its edge, wherever the third one is.
+/// Two opposite normals are divided on the side of the third; without one, nobody knows where. Those of a thin wedge
+/// are divided beyond its edge, wherever the third one is.
 #[test]
 fn opposite_normals_are_divided_by_the_third() {
     let normal = unit(&[0.6, 0.64, 0.48]).expect("a direction");

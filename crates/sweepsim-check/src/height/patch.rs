@@ -21,8 +21,8 @@ use std::collections::HashMap;
 
 /// Angles of this size do not count.
 const FLAT: f64 = 1e-9;
-/// Normals whose sum is shorter are opposite but for their rounding: a wedge of that angle would count as flat. A longer
-/// sum is exact, as its terms almost cancel, and so is its direction.
+/// Normals whose sum is shorter are opposite but for their rounding: a wedge of that angle would count as flat. A
+/// longer sum is exact, as its terms almost cancel, and so is its direction.
 const OPPOSITE: f64 = 1e-11;
 
 /// The points at a distance from the hull of some corners, along unit vectors in the cone of some normals.

@@ -1,8 +1,8 @@
 //! STEP files (ISO 10303-21): boundary representations as triangles.
 //!
 //! ```text
-//! text ──scan──▶ entities and their places ──rewritten──▶ library ──▶ faces, edges ──seams, build──▶ triangles per face
-//!                        └──audit, copies, styles──▶ units, placements, bodies, colours ──┘──kernel──▶ StepPart
+//! text ──scan──▶ entities, their places ──rewritten──▶ library ──▶ faces, edges ──seams, build──▶ triangles per face
+//!                     └──audit, copies, styles──▶ units, placements, bodies, colours ──┘──kernel──▶ StepPart
 //! ```
 //!
 //! The library (kentron) reads geometry and topology, and triangulates each face between edges that its neighbours
