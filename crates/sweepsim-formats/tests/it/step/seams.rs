@@ -1,4 +1,4 @@
-//! Faces that go once around and have no seam, as systems built on Parasolid write them.
+//! Faces that go once around and have no seam, as NX writes them.
 
 use super::writer::Writer;
 use std::f64::consts::PI;

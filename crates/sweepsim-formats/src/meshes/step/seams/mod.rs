@@ -1,8 +1,7 @@
 //! Seams of faces that go once around.
 //!
-//! Systems built on Parasolid bound the side of a hole by its two rims, a countersink's tip or a dimple by one. The
-//! library wants one boundary that closes in the surface's parameters: from rim to rim, or to the pole, along a seam
-//! and back.
+//! Some systems, as NX, bound the side of a hole by its two rims, a countersink's tip or a dimple by one. The library
+//! wants one boundary that closes in the surface's parameters: from rim to rim, or to the pole, along a seam and back.
 
 mod around;
 
