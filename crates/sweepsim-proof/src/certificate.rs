@@ -3,7 +3,7 @@
 use crate::excess::Left;
 use crate::motion::{Cutter, Piece};
 use crate::process::Touched;
-use crate::search::{Closest, Enclosed, TOGETHER, Tree};
+use crate::search::{Closest, Enclosed, Tree};
 use crate::solid::Target;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -45,10 +45,9 @@ pub fn outline(tool: &Tool) -> Outline {
 /// The motions of a path, in the order in which proofs look at them. `is_idle`: whether a move must not cut.
 #[must_use]
 pub fn motions(cutter: &Cutter, deviation: f64, is_idle: &dyn Fn(usize) -> bool) -> Vec<Motion> {
-    let count = cutter.path.moves();
-    let mut all = Vec::with_capacity(count);
-    for first in (0..count).step_by(TOGETHER) {
-        let pieces = cutter.pieces(first..count.min(first + TOGETHER), deviation);
+    let mut all = Vec::with_capacity(cutter.path.moves());
+    for moves in cutter.blocks() {
+        let pieces = cutter.pieces(moves, deviation);
         all.extend(pieces.iter().map(|piece| Motion {
             number: piece.number,
             possible: piece.is_other,
@@ -161,8 +160,11 @@ pub fn depth_claim(
     let witness = match &found.deepest {
         None => None,
         Some((number, witness)) => {
-            let (path, _) = cutters[*number];
-            let first = first_motion(&scene.paths[path], witness.number / TOGETHER * TOGETHER);
+            let (path, cutter) = &cutters[*number];
+            let path = *path;
+            let mut blocks = cutter.blocks().into_iter();
+            let own = blocks.find(|moves| moves.contains(&witness.number))?;
+            let first = first_motion(&scene.paths[path], own.start);
             let is_own = |(own, _): &(usize, usize)| *own == path;
             question.movers.iter().any(is_own).then(|| Witness {
                 path,

@@ -15,6 +15,16 @@ pub struct Witness {
     pub depth: f64,
 }
 
+impl Witness {
+    /// The same, so many moves later.
+    pub(crate) fn later(self, moves: usize) -> Self {
+        Self {
+            number: self.number + moves,
+            ..self
+        }
+    }
+}
+
 /// A box and a time in which it is not known how deep the solid goes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenBox {
@@ -28,4 +38,13 @@ pub struct OpenBox {
     pub high: [f64; 3],
     /// No point of it is deeper.
     pub depth: f64,
+}
+
+impl OpenBox {
+    /// The same, so many moves later.
+    pub(crate) fn later(mut self, moves: usize) -> Self {
+        self.first.0 += moves;
+        self.last.0 += moves;
+        self
+    }
 }

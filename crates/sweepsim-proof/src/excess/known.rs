@@ -2,18 +2,21 @@
 //!
 //! A search asks what was removed around some points. It is kept with a box that holds all of these, and a digest of
 //! all stretches whose boxes meet it. If that is the same again, so is every answer within the search, and it asks for
-//! the same points.
+//! the same points. Where in a program stretches are does not matter, only their order, but for records.
 
 use super::found::Found;
 use super::removed::Removed;
-use crate::motion::Bounds;
+use crate::motion::{Bounds, blocks, digest};
 use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
 use nalgebra::Vector3;
 
-/// So many stretches have a digest together: if one of them is another, what is near any of them is looked at again.
-const TOGETHER: usize = 16;
+/// Of blocks of stretches, which have a digest together: if one of them is another, what is near any of them is looked
+/// at again.
+const TOGETHER: [usize; 3] = [8, 8, 32];
 /// So many of these have a box around all.
 const BOXED: usize = 16;
+/// Where the polynomial of digests is evaluated: odd, so that no digest is lost.
+const BASE: u128 = 0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835;
 
 /// Stretches of all courses, some at a time: a box around what solids sweep there, and a digest.
 pub(super) struct Blocks<'a> {
@@ -26,27 +29,27 @@ pub(super) struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// `question`: what is known of the search but for the stretches.
-    pub fn new(recall: &'a dyn Recall, removed: &Removed, mut question: Writing) -> Self {
+    /// `question`: what is known of the search but for the stretches. `recorded`: answers have the stretches' numbers.
+    pub fn new(recall: &'a dyn Recall, removed: &Removed, mut question: Writing, recorded: bool) -> Self {
         let mut all = Vec::new();
         for (number, course) in removed.courses.iter().enumerate() {
             let solids: Vec<_> = course.solids.iter().map(|own| own.convex).collect();
             question.bytes(format!("{solids:?}").as_bytes());
-            let hulls = course.solids.iter().map(|own| own.boxes.hulls(TOGETHER));
+            let stretches = course.stretches;
+            let place = |number: usize| digest(&stretches[number].ends[0].tip);
+            let ranges: Vec<_> = blocks(stretches.len(), TOGETHER, place).collect();
+            let hulls = course.solids.iter().map(|own| own.boxes.hulls(&ranges));
             let hulls = hulls.reduce(|mut all, own| {
                 all.iter_mut().zip(&own).for_each(|(a, b)| *a = hull(a, b));
                 all
             });
-            for (first, (hull, some)) in hulls
-                .into_iter()
-                .flatten()
-                .zip(course.stretches.chunks(TOGETHER))
-                .enumerate()
-            {
+            for (hull, some) in hulls.into_iter().flatten().zip(ranges) {
                 let mut content = Writing::default();
                 content.number(number);
-                content.number(first);
-                some.iter().for_each(|stretch| stretch.write(&mut content));
+                if recorded {
+                    content.number(some.start);
+                }
+                stretches[some].iter().for_each(|stretch| stretch.write(&mut content));
                 let digest = recall.digest(&content.0);
                 all.push((hull, u128::from_le_bytes(std::array::from_fn(|k| digest[k]))));
             }
@@ -61,8 +64,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// All stretches that may meet a box, as the sum of parts of their digests: these tell which stretches they are of,
-    /// so their order does not matter.
+    /// All stretches that may meet a box, in order, as the value of a polynomial with parts of their digests.
     fn around(&self, around: &Bounds) -> u128 {
         let (low, high) = (
             around.low.map(|c| (c as f32).next_down()),
@@ -72,7 +74,7 @@ impl<'a> Blocks<'a> {
         let near = self.hulls.iter().zip(self.all.chunks(BOXED));
         let near = near.filter(|(hull, _)| meets(hull)).flat_map(|(_, some)| some);
         let near = near.filter(|(own, _)| meets(own));
-        near.fold(0, |sum, (_, digest)| sum.wrapping_add(*digest))
+        near.fold(0, |value, (_, digest)| value.wrapping_mul(BASE).wrapping_add(*digest))
     }
 
     /// What is found at some patches: known, or as it is looked for; with a box around all that was asked for then.

@@ -163,7 +163,7 @@ pub fn highest_from(
         question.bytes(b"highest");
         question.floats(&[margin]);
         question.number(usize::from(scene.recorded));
-        Blocks::new(recall, &scene.removed, question)
+        Blocks::new(recall, &scene.removed, question, recorded)
     });
     Ok(scene.search(limits, blocks.as_ref(), monitor))
 }

@@ -5,6 +5,7 @@ use super::run::{Bounds, swept};
 use crate::tool::Convex;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// Boxes around what is swept in some consecutive stretches, by their lower and upper corners: first of all stretches,
 /// then all boxes of the first half, then those of the second.
@@ -41,8 +42,8 @@ impl Boxes {
         self.each(before, around, |stretch, _| visit(stretch))
     }
 
-    /// Boxes around what is swept in so many stretches each.
-    pub fn hulls(&self, together: usize) -> Vec<[f32; 6]> {
+    /// Boxes around what is swept in some consecutive stretches each, of all.
+    pub fn hulls(&self, blocks: &[Range<usize>]) -> Vec<[f32; 6]> {
         let none = [
             f32::INFINITY,
             f32::INFINITY,
@@ -51,10 +52,12 @@ impl Boxes {
             f32::NEG_INFINITY,
             f32::NEG_INFINITY,
         ];
-        let mut all = vec![none; self.stretches.div_ceil(together)];
+        let mut all = vec![none; blocks.len()];
+        let mut present = 0;
         let everywhere = Vector3::repeat(f64::INFINITY);
         self.each(self.stretches, (&-everywhere, &everywhere), |stretch, own| {
-            let hull = &mut all[stretch / together];
+            present += usize::from(stretch >= blocks[present].end);
+            let hull = &mut all[present];
             for k in 0..3 {
                 (hull[k], hull[k + 3]) = (hull[k].min(own[k]), hull[k + 3].max(own[k + 3]));
             }

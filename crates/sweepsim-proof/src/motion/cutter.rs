@@ -1,6 +1,6 @@
 //! A cutter, or a body of a tool, on its path.
 
-use super::Stretch;
+use super::{Stretch, blocks, digest};
 use crate::recall::Writing;
 use crate::tool::Convex;
 use std::ops::Range;
@@ -32,6 +32,9 @@ pub struct Piece {
     pub is_other: bool,
 }
 
+/// Of the blocks of moves that are looked at together.
+const TOGETHER: [usize; 3] = [32, 32, 128];
+
 impl<'a> Cutter<'a> {
     /// Solids on a path.
     #[must_use]
@@ -43,6 +46,14 @@ impl<'a> Cutter<'a> {
             others,
             reach,
         }
+    }
+
+    /// The moves in blocks, which are looked at together.
+    #[must_use]
+    pub(crate) fn blocks(&self) -> Vec<Range<usize>> {
+        let all = self.path.poses_in_order(0).map(|pose| digest(&pose.tip().into()));
+        let all: Vec<u64> = all.collect();
+        blocks(self.path.moves(), TOGETHER, |number| all[number]).collect()
     }
 
     /// The pieces of some moves: first those of the path, then those of other courses.
@@ -68,10 +79,9 @@ impl<'a> Cutter<'a> {
         pieces
     }
 
-    /// All that the pieces of some moves follow from, for a digest.
+    /// All that the pieces of some moves follow from but for their numbers, for a digest.
     pub(crate) fn write(&self, to: &mut Writing, moves: Range<usize>, deviation: f64) {
-        to.number(moves.start);
-        to.number(moves.end);
+        to.number(moves.len());
         to.floats(&[self.reach, deviation]);
         let (path, first) = self.path.unpacked(moves.clone());
         for number in moves.start..=moves.end {
@@ -87,8 +97,16 @@ impl<'a> Cutter<'a> {
             }
         }
         for other in self.others.iter().flat_map(|others| others.of(moves.clone())) {
-            to.bytes(format!("{other:?}").as_bytes());
+            to.number(other.number - moves.start);
+            to.bytes(format!("{:?} {:?}", other.path, other.times).as_bytes());
         }
+    }
+
+    /// The same as stretches, which are the same wherever in a program they are: their moves count from the first.
+    pub(crate) fn stretches_from_first(&self, moves: Range<usize>, deviation: f64) -> Vec<Stretch> {
+        let first = moves.start;
+        let stretch = |piece: Piece| Stretch::new(piece.segment, piece.number - first, piece.times);
+        self.pieces(moves, deviation).into_iter().map(stretch).collect()
     }
 
     /// The same as stretches.

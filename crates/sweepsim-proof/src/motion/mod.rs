@@ -1,10 +1,12 @@
 //! Motions of tools of revolution: where they are, how fast they move, how much they bend.
 
+mod blocks;
 mod boxes;
 mod cutter;
 mod run;
 mod stretch;
 
+pub(crate) use blocks::{blocks, digest};
 pub(crate) use boxes::Boxes;
 pub use cutter::{Cutter, Piece};
 pub(crate) use run::{Bounds, Run};

@@ -90,9 +90,8 @@ impl Stretch {
         }
     }
 
-    /// All that it is, for a digest.
+    /// All that it is but for the move's number, for a digest.
     pub fn write(&self, to: &mut Writing) {
-        to.number(self.number);
         to.floats(&self.times);
         for end in &self.ends {
             to.floats(end.tip.as_slice());

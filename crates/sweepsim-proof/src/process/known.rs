@@ -1,28 +1,27 @@
 //! Answers to looks at ranges of moves that are known: they follow from all moves up to there.
 
-use super::scene::{Found, Room, TOGETHER, Work};
+use super::scene::{Found, Room, Work};
 use crate::recall::{Answer, QuestionDigest, Reading, Recall, Writing};
+use rustc_hash::FxHashMap;
 
-/// Digests of all that is done up to the end of each range of moves, of all paths.
-pub(super) fn prefixes(recall: &dyn Recall, work: &[Work], room: &Room) -> Vec<Vec<QuestionDigest>> {
+/// Digests of all that is done up to the end of each range of moves, by the path and the first of them.
+pub(super) fn prefixes(recall: &dyn Recall, work: &[Work], room: &Room) -> FxHashMap<(usize, usize), QuestionDigest> {
     let mut before = QuestionDigest::default();
-    let mut all = Vec::with_capacity(work.len());
-    for own in work {
+    let mut all = FxHashMap::default();
+    for (path, own) in work.iter().enumerate() {
         let mut question = Writing::default();
         question.0.extend(before);
         question.bytes(format!("{:?} {:?}", own.cutter.solids, own.bodies).as_bytes());
         before = recall.digest(&question.0);
-        let moves = own.cutter.path.moves();
-        let ranges = (0..moves).step_by(TOGETHER).map(|from| {
-            let range = from..moves.min(from + TOGETHER);
+        for range in own.cutter.blocks() {
+            let place = (path, range.start);
             let mut question = Writing::default();
             question.0.extend(before);
             own.cutter.write(&mut question, range.clone(), room.deviation);
             question.0.extend(range.map(|number| u8::from((own.is_rapid)(number))));
             before = recall.digest(&question.0);
-            before
-        });
-        all.push(ranges.collect());
+            all.insert(place, before);
+        }
     }
     all
 }

@@ -7,9 +7,6 @@ use crate::tool::Convex;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// So many moves are looked at together.
-pub(super) const TOGETHER: usize = 64;
-
 /// A path of a program, with all that moves along it.
 pub struct Work<'a> {
     /// What cuts. It is followed as closely as its reach asks for, or that of the bodies if that is farther.

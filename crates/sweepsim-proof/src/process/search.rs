@@ -3,7 +3,7 @@
 use super::history::History;
 use super::known::prefixes;
 use super::samples::Turned;
-use super::scene::{Found, Movers, Room, Scene, TOGETHER, Work};
+use super::scene::{Found, Movers, Room, Scene, Work};
 use super::visit::Search;
 use crate::excess::{Before, Course};
 use crate::motion::{Cutter, Run, Stretch};
@@ -142,15 +142,11 @@ impl Cut {
     }
 
     fn new(work: &Work, solids: &[Convex], deviation: f64) -> Self {
-        let moves = work.cutter.path.moves();
-        let (mut stretches, mut first) = (Vec::new(), Vec::with_capacity(moves));
+        let (mut stretches, mut first) = (Vec::new(), Vec::with_capacity(work.cutter.path.moves()));
         let cutter = alone(&work.cutter, solids);
-        for from in (0..moves).step_by(TOGETHER) {
-            let mut own = cutter
-                .stretches(from..moves.min(from + TOGETHER), deviation)
-                .into_iter()
-                .peekable();
-            for number in from..moves.min(from + TOGETHER) {
+        for moves in cutter.blocks() {
+            let mut own = cutter.stretches(moves.clone(), deviation).into_iter().peekable();
+            for number in moves {
                 first.push(u32::try_from(stretches.len()).unwrap_or(u32::MAX));
                 while let Some(stretch) = own.next_if(|stretch| stretch.number == number) {
                     if !(work.is_rapid)(number) {
@@ -174,10 +170,7 @@ fn alone<'a>(cutter: &Cutter<'a>, solids: &'a [Convex]) -> Cutter<'a> {
 
 impl Scene<'_> {
     fn search(&self, recall: &dyn Recall, monitor: &dyn Monitor) -> Option<Touched> {
-        let prefixes = match recall.keeps() {
-            true => prefixes(recall, self.work, self.room),
-            false => Vec::new(),
-        };
+        let prefixes = recall.keeps().then(|| prefixes(recall, self.work, self.room));
         let all: Vec<(usize, Range<usize>)> = self.work.iter().enumerate().flat_map(|own| self.ranges(own)).collect();
         let mut found: Vec<Found> = all.iter().map(|_| Found::default()).collect();
         let mut open: Vec<usize> = (0..all.len()).collect();
@@ -193,8 +186,8 @@ impl Scene<'_> {
                 }
                 let (path, moves) = &all[*number];
                 let look = || self.look(*path, moves.clone(), most);
-                let found = match prefixes.get(*path) {
-                    Some(own) => self.known(recall, &own[moves.start / TOGETHER], most, look),
+                let found = match &prefixes {
+                    Some(prefixes) => self.known(recall, &prefixes[&(*path, moves.start)], most, look),
                     None => look(),
                 };
                 monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
@@ -244,10 +237,7 @@ impl Scene<'_> {
 
     /// Parts of the work on a path.
     fn ranges(&self, (path, work): (usize, &Work)) -> Vec<(usize, Range<usize>)> {
-        let moves = work.cutter.path.moves();
-        let ranges = (0..moves)
-            .step_by(TOGETHER)
-            .map(|from| from..moves.min(from + TOGETHER));
+        let ranges = work.cutter.blocks().into_iter();
         let some = ranges.filter(|range| self.movers == Movers::Bodies || range.clone().any(work.is_rapid));
         some.map(|range| (path, range)).collect()
     }

@@ -1,9 +1,10 @@
 //! How near bodies come to a solid, at every time.
 
-use super::gouge::{Limits, Tree, parts, trees};
-use super::known::{Asking, Part, share};
+use super::gouge::{Limits, Tree, trees};
+use super::known::{Asking, share};
 use super::near::{Found, enough};
 use super::nearest::Search;
+use super::part::{Part, parts};
 use crate::motion::{Cutter, Run};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
@@ -83,8 +84,10 @@ pub fn closest_from(
         };
         let own: Vec<Part> = open.iter().map(|number| parts[*number].clone()).collect();
         let asked = (pairs, known, recorded);
-        let look =
-            |root: &Cell, (path, moves): &Part| look((target, root), &bodies[*path], moves.clone(), limits, asked);
+        let look = |root: &Cell, part: &Part| {
+            let body = &bodies[part.path];
+            look((target, root), body, part.moves.clone(), limits, asked)
+        };
         let again = asking.answers(target, &own, look, monitor)?;
         for (number, again) in open.iter().zip(again) {
             let before = std::mem::replace(&mut found[*number], again);
@@ -102,29 +105,31 @@ pub fn closest_from(
         pairs: 0,
         trees: Vec::new(),
     };
-    for ((path, moves), found) in parts.into_iter().zip(found) {
+    for (part, found) in parts.iter().zip(found) {
+        let (path, first) = (part.path, part.moves.start);
         all.bound = all.bound.min(found.bound);
         all.pairs += found.pairs;
-        all.trees.extend(trees(path, moves, found.trees));
+        all.trees.extend(trees(part, found.trees));
         if found.bound < enough(known, limits) {
             all.open_count += found.open_count;
-            all.open.extend(found.open.into_iter().map(|open| (path, open)));
+            all.open
+                .extend(found.open.into_iter().map(|open| (path, open.later(first))));
         }
-        all.moves
-            .extend(found.moves.into_values().map(|witness| (path, witness)));
+        let moves = found.moves.into_values();
+        all.moves.extend(moves.map(|witness| (path, witness.later(first))));
         if let Some(witness) = found.nearest
             && all
                 .nearest
                 .as_ref()
                 .is_none_or(|(_, known)| witness.depth < known.depth)
         {
-            all.nearest = Some((path, witness));
+            all.nearest = Some((path, witness.later(first)));
         }
     }
     Some(all)
 }
 
-/// Of some moves of a body. `known`: so near something is.
+/// Of some moves of a body, counted from the first of them. `known`: so near something is.
 fn look(
     (target, root): (&Target, &Cell),
     body: &Cutter,
@@ -133,7 +138,7 @@ fn look(
     (pairs, known, recorded): (usize, f64, bool),
 ) -> Found {
     let reach = body.reach;
-    let stretches = body.stretches(moves, limits.deviation);
+    let stretches = body.stretches_from_first(moves, limits.deviation);
     let far = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));

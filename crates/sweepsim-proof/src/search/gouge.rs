@@ -2,7 +2,8 @@
 
 use super::deepest::Search;
 use super::found::{Found, Wanted, enough};
-use super::known::{Asking, Part, share};
+use super::known::{Asking, share};
+use super::part::{Part, parts};
 use crate::motion::{Cutter, Run};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
@@ -72,9 +73,7 @@ pub struct Enclosed {
     pub trees: Vec<Tree>,
 }
 
-/// So many moves are looked at together.
-pub(crate) const TOGETHER: usize = 64;
-/// At first, about so many parts of the work, evenly, look at so many pairs.
+/// At first, about so many parts of the work, here and there, look at so many pairs.
 const SAMPLED: usize = 64;
 const FIRST_LOOK: usize = 512;
 /// Where there is room up to the limit, the enclosure need not be narrower than this part of it.
@@ -137,8 +136,8 @@ pub fn deepest_from(
             known,
             recorded,
         };
-        let step = if look == 0 { open.len().div_ceil(SAMPLED) } else { 1 };
-        let some: Vec<usize> = open.iter().copied().step_by(step.max(1)).collect();
+        let is_asked = |number: &usize| look > 0 || parts[*number].is_sampled(SAMPLED, parts.len());
+        let some: Vec<usize> = open.iter().copied().filter(is_asked).collect();
         let own: Vec<_> = some.iter().map(|number| parts[*number].clone()).collect();
         let again = look_at((target, recall), cutters, (&own, limits), asked, monitor)?;
         for (number, again) in some.iter().zip(again) {
@@ -148,9 +147,9 @@ pub fn deepest_from(
     }
     let mut all = Enclosed::default();
     let mut depths = Vec::new();
-    for ((path, moves), mut found) in parts.into_iter().zip(found) {
-        all.trees.extend(trees(path, moves, std::mem::take(&mut found.trees)));
-        all.join(path, found, &mut depths);
+    for (part, mut found) in parts.iter().zip(found) {
+        all.trees.extend(trees(part, std::mem::take(&mut found.trees)));
+        all.join(part, found, &mut depths);
     }
     // What is left open elsewhere, but no deeper than what is known, is settled.
     let known = all.deepest.as_ref().map_or(0.0, |(_, known)| known.depth);
@@ -162,23 +161,13 @@ pub fn deepest_from(
 }
 
 /// The trees of all solids in a part of the work.
-pub(super) fn trees(path: usize, moves: Range<usize>, all: Vec<Vec<u8>>) -> impl Iterator<Item = Tree> {
+pub(super) fn trees(part: &Part, all: Vec<Vec<u8>>) -> impl Iterator<Item = Tree> {
     all.into_iter().enumerate().map(move |(solid, bytes)| Tree {
-        path,
-        moves: moves.clone(),
+        path: part.path,
+        moves: part.moves.clone(),
         solid,
         bytes,
     })
-}
-
-/// Parts of the work: some consecutive moves of a cutter each.
-pub(super) fn parts(cutters: &[Cutter]) -> Vec<(usize, Range<usize>)> {
-    let of_one = |(number, cutter): (usize, &Cutter)| {
-        let moves = cutter.path.moves();
-        let part = move |first| (number, first..moves.min(first + TOGETHER));
-        (0..moves).step_by(TOGETHER).map(part)
-    };
-    cutters.iter().enumerate().flat_map(of_one).collect()
 }
 
 /// What is asked of a look.
@@ -210,32 +199,36 @@ fn look_at(
         deviation: limits.deviation,
         question,
     };
-    let look =
-        |root: &Cell, (number, moves): &Part| look((target, root), &cutters[*number], moves.clone(), limits, asked);
+    let look = |root: &Cell, part: &Part| {
+        let cutter = &cutters[part.path];
+        look((target, root), cutter, part.moves.clone(), limits, asked)
+    };
     asking.answers(target, parts, look, monitor)
 }
 
 impl Enclosed {
-    /// With what was found in a part of the work, of this path.
-    fn join(&mut self, path: usize, found: Found, open: &mut Vec<f64>) {
+    /// With what was found in a part of the work.
+    fn join(&mut self, &Part { path, ref moves, .. }: &Part, found: Found, open: &mut Vec<f64>) {
+        let first = moves.start;
         self.bound = self.bound.max(found.bound);
         self.pairs += found.pairs;
-        self.open.extend(found.open.into_iter().map(|open| (path, open)));
+        self.open
+            .extend(found.open.into_iter().map(|open| (path, open.later(first))));
         open.extend(found.open_depths);
-        self.moves
-            .extend(found.moves.into_values().map(|witness| (path, witness)));
+        let moves = found.moves.into_values();
+        self.moves.extend(moves.map(|witness| (path, witness.later(first))));
         if let Some(witness) = found.deepest
             && self
                 .deepest
                 .as_ref()
                 .is_none_or(|(_, known)| witness.depth > known.depth)
         {
-            self.deepest = Some((path, witness));
+            self.deepest = Some((path, witness.later(first)));
         }
     }
 }
 
-/// Some moves of a cutter.
+/// Some moves of a cutter, counted from the first of them.
 fn look(
     (target, root): (&Target, &Cell),
     cutter: &Cutter,
@@ -244,7 +237,7 @@ fn look(
     asked: Asked,
 ) -> Found {
     let reach = cutter.reach;
-    let stretches = cutter.stretches(moves, limits.deviation);
+    let stretches = cutter.stretches_from_first(moves, limits.deviation);
     let size = stretches
         .iter()
         .map(|stretch| stretch.low.amax().max(stretch.high.amax()));

@@ -1,9 +1,9 @@
 //! Answers to looks at parts of a work that are known.
 
+use super::part::{Part, groups};
 use crate::motion::Cutter;
 use crate::recall::{Answer, QuestionDigest, Recall, Writing};
 use crate::solid::{Cell, Target};
-use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_solve::Monitor;
 
@@ -15,9 +15,6 @@ pub(super) struct Asking<'a> {
     /// The rest of the question.
     pub question: Writing,
 }
-
-/// A part of the work: some moves of a path.
-pub(super) type Part = (usize, Range<usize>);
 
 /// How much each of some parts may cost, at least so much. A program that is a little longer, or shorter, asks the same
 /// of most parts: shares are numbers of four digits in binary, and then zeros.
@@ -31,18 +28,18 @@ impl Asking<'_> {
     fn digest(&self, parts: &[Part]) -> QuestionDigest {
         let mut question = self.question.clone();
         let mut present = None;
-        for (path, moves) in parts {
-            let cutter = &self.cutters[*path];
-            if present.replace(*path) != Some(*path) {
-                question.number(*path);
+        for part in parts {
+            let cutter = &self.cutters[part.path];
+            if present.replace(part.path) != Some(part.path) {
+                question.number(part.path);
                 question.bytes(format!("{:?}", cutter.solids).as_bytes());
             }
-            cutter.write(&mut question, moves.clone(), self.deviation);
+            cutter.write(&mut question, part.moves.clone(), self.deviation);
         }
         self.recall.digest(&question.0)
     }
 
-    /// What is found in some parts: known, or looked for. `None` if the monitor cancelled the work.
+    /// What is found in some parts, where moves count from the first of each: known, or looked for. `None` if the monitor cancelled the work.
     pub fn answers<A: Answer + Send>(
         &self,
         target: &Target,
@@ -68,7 +65,7 @@ impl Asking<'_> {
                 self.recall.keep(&self.digest(parts), A::write_all(found));
             }
         };
-        target.each(parts, (known, keep), look)
+        target.each(groups(parts), (known, keep), look)
     }
 }
 

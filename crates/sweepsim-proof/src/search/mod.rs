@@ -10,9 +10,9 @@ mod known;
 mod near;
 mod nearest;
 mod pair;
+mod part;
 mod reach;
 mod trace;
 
 pub use closest::{Closest, closest, closest_from};
-pub(crate) use gouge::TOGETHER;
 pub use gouge::{Enclosed, Limits, Tree, deepest, deepest_from};

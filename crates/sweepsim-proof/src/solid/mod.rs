@@ -41,8 +41,6 @@ pub struct Target {
 const MOST_CELLS: usize = 2_000_000;
 /// No more of them are kept for the next parts of a work.
 const KEPT: usize = 100_000;
-/// So many parts of a work are done before that is looked at.
-const TOGETHER: usize = 32;
 
 impl Target {
     /// `lift`: how far something may have to be lifted out of it, about: a few times a limit of depths. It does not
@@ -112,17 +110,17 @@ impl Target {
         self.lift
     }
 
-    /// Does a work in parts, some at a time, with the cells in between, and forgets these when they are many. What
-    /// remains known does not depend on threads. `None` if one of the parts is none. What is `known` of some parts is
-    /// not looked for, and `keep` gets what is found of others.
-    pub(crate) fn each<T: Sync, U: Send>(
+    /// Does a work in groups of parts, with the cells in between, and forgets these when they are many. What remains
+    /// known does not depend on threads. `None` if one of the parts is none. What is `known` of a group is not looked
+    /// for, and `keep` gets what is found of others.
+    pub(crate) fn each<'a, T: Sync + 'a, U: Send>(
         &self,
-        parts: &[T],
+        groups: impl Iterator<Item = &'a [T]>,
         (known, keep): (impl Fn(&[T]) -> Option<Vec<U>>, impl Fn(&[T], &[U])),
         work: impl Fn(&Cell, &T) -> Option<U> + Sync,
     ) -> Option<Vec<U>> {
-        let mut all = Vec::with_capacity(parts.len());
-        for some in parts.chunks(TOGETHER) {
+        let mut all = Vec::new();
+        for some in groups {
             if let Some(own) = known(some) {
                 all.extend(own);
                 continue;

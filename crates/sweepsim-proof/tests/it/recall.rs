@@ -63,23 +63,47 @@ fn raster() -> Vec<[f64; 3]> {
     tips
 }
 
-/// What the four searches find, each as text.
-fn found(recall: &dyn Recall, tips: &[[f64; 3]]) -> [String; 4] {
-    let up = [0.0, 0.0, 1.0];
-    let path = Path::new(tips.iter().map(|tip| Pose::new(*tip, up).unwrap()).collect()).unwrap();
-    let (cutter, body): (Vec<Convex>, Vec<Convex>) = (
-        cover(&Tool::ball(3.0, 12.0).unwrap(), 1e-4),
-        cover(&Tool::flat(4.0, 12.0).unwrap(), 1e-4),
-    );
+fn path(tips: &[[f64; 3]]) -> Path {
+    let pose = |tip: &[f64; 3]| Pose::new(*tip, [0.0, 0.0, 1.0]).unwrap();
+    Path::new(tips.iter().map(pose).collect()).unwrap()
+}
+
+fn cutter() -> Vec<Convex> {
+    cover(&Tool::ball(3.0, 12.0).unwrap(), 1e-4)
+}
+
+fn shank() -> Vec<Convex> {
+    cover(&Tool::flat(4.0, 12.0).unwrap(), 1e-4)
+}
+
+const STOCK: Stock = Stock::Block {
+    min: [-20.0, -12.0, -6.0],
+    max: [20.0, 12.0, 4.0],
+};
+
+/// What the three searches find that ask for moves wherever they are, each as text; with trees, if they are wanted.
+fn found(recall: &dyn Recall, tips: &[[f64; 3]], recorded: bool) -> [String; 3] {
+    let (path, cutter, shank) = (path(tips), cutter(), shank());
     let target = || Target::new(&TriangleSoup::block([-20.0, -12.0, -6.0], [20.0, 12.0, 2.0]), LIFT).unwrap();
-    let stock = Stock::Block {
-        min: [-20.0, -12.0, -6.0],
-        max: [20.0, 12.0, 4.0],
-    };
+    let (own, shank) = ([Cutter::new(&cutter, &path, None)], [Cutter::new(&shank, &path, None)]);
+    let limits = |limit: f64| Limits::new(limit, 0.1 * limit, 400_000);
+    let deepest = deepest_from(recall, &target(), &own, &limits(0.02), recorded, &());
+    let closest = closest_from(recall, &target(), &shank, &limits(0.04), recorded, &());
+    let highest = highest_from(recall, (&target(), &STOCK), &own, &limits(0.4), recorded, &());
+    [
+        format!("{:?}", deepest.unwrap()),
+        format!("{:?}", closest.unwrap()),
+        format!("{:?}", highest.unwrap().unwrap()),
+    ]
+}
+
+/// Which rapids, and which moves of the shank, touch what is still there: that depends on all moves before.
+fn touched(recall: &dyn Recall, tips: &[[f64; 3]]) -> String {
+    let (path, cutter, shank) = (path(tips), cutter(), shank());
     let is_rapid = |number: usize| tips[number][2] == 6.0 || tips[number + 1][2] == 6.0;
     let work = [Work {
         cutter: Cutter::new(&cutter, &path, None),
-        bodies: &body,
+        bodies: &shank,
         is_rapid: &is_rapid,
     }];
     let room = Room {
@@ -87,28 +111,8 @@ fn found(recall: &dyn Recall, tips: &[[f64; 3]]) -> [String; 4] {
         deviation: 1e-6,
         zones: 20_000,
     };
-    let (own, shank) = ([Cutter::new(&cutter, &path, None)], [Cutter::new(&body, &path, None)]);
-    let limits = |limit: f64| Limits::new(limit, 0.1 * limit, 400_000);
-    [
-        format!(
-            "{:?}",
-            deepest_from(recall, &target(), &own, &limits(0.02), true, &()).unwrap()
-        ),
-        format!(
-            "{:?}",
-            closest_from(recall, &target(), &shank, &limits(0.04), true, &()).unwrap()
-        ),
-        format!("{:?}", {
-            let left = highest_from(recall, (&target(), &stock), &own, &limits(0.4), true, &());
-            left.unwrap().unwrap()
-        }),
-        format!(
-            "{:?}",
-            touched_from(recall, &stock, &work, Movers::Rapids, &room, &())
-                .unwrap()
-                .unwrap()
-        ),
-    ]
+    let touched = touched_from(recall, &STOCK, &work, Movers::Rapids, &room, &());
+    format!("{:?}", touched.unwrap().unwrap())
 }
 
 /// A change of a program.
@@ -120,7 +124,8 @@ fn what_is_known_changes_no_answer() {
     let mut tips = raster();
     assert!(tips.len() > 4_900);
     let memory = Memory::default();
-    assert_eq!(found(&memory, &tips), found(&(), &tips));
+    let all = |recall: &dyn Recall, tips: &[[f64; 3]]| (found(recall, tips, true), touched(recall, tips));
+    assert_eq!(all(&memory, &tips), all(&(), &tips));
     let [known, first] = memory.counts();
     assert!(known < first / 4 && first > 60, "{known} {first}");
     let late = tips.len() - 120;
@@ -136,13 +141,35 @@ fn what_is_known_changes_no_answer() {
     ];
     for (what, change) in changes {
         change(&mut tips);
-        let again = found(&memory, &tips);
+        let again = all(&memory, &tips);
         let [known, searched] = memory.counts();
-        assert_eq!(again, found(&(), &tips), "{what}");
+        assert_eq!(again, all(&(), &tips), "{what}");
         match what {
             "nothing" => assert_eq!(searched, 0),
             "an early move" => assert!(known > 0),
             _ => assert!(searched > 0 && 2 * searched < first, "{what}: {searched} of {first}"),
         }
+    }
+}
+
+/// What comes after a move that was put in, or left out, is the same moves with other numbers.
+#[test]
+fn later_moves_are_known_by_what_they_are() {
+    let mut tips = raster();
+    let memory = Memory::default();
+    found(&memory, &tips, false);
+    let [_, first] = memory.counts();
+    let changes: [(&str, Change); 2] = [
+        ("one more move", &|tips| tips.insert(1_000, [3.0, -4.0, 2.5])),
+        ("a move less", &|tips| {
+            tips.remove(2_000);
+        }),
+    ];
+    for (what, change) in changes {
+        change(&mut tips);
+        let again = found(&memory, &tips, false);
+        let [known, searched] = memory.counts();
+        assert!(known > 0 && 8 * searched < first, "{what}: {searched} of {first}");
+        assert_eq!(again, found(&(), &tips, false), "{what}");
     }
 }
