@@ -1,6 +1,6 @@
 //! What the cutters of a program have removed, as far as it is certain.
 
-use super::times::{AXIS, best_time, from_axis, is_inside, level_at, quick, stays_away};
+use super::times::{best_time, is_inside, least_order, level_at, order_at, quick, stays_away};
 use crate::motion::{Boxes, Stretch};
 use crate::tool::{Convex, Level};
 use nalgebra::Vector3;
@@ -50,8 +50,17 @@ const CENTRAL: usize = 32;
 /// As many stretches are tried for a patch, those deepest around its middle.
 const TRIED: usize = 3;
 
-/// A stretch of a solid, and how far outside of it a point is at the best time that was found.
+/// A stretch of a solid that may hold a point.
 struct Candidate<'a> {
+    /// Its order is no less.
+    least: f64,
+    level_of: &'a Level,
+    stretch: &'a Stretch,
+    numbers: [usize; 3],
+}
+
+/// The same, and how far outside of it the point is at the best time that was found.
+struct Tried<'a> {
     level: f64,
     /// The least comes first: where a point is, and the axis is near. Over a floor many are as deep.
     order: f64,
@@ -59,6 +68,36 @@ struct Candidate<'a> {
     stretch: &'a Stretch,
     time: f64,
     numbers: [usize; 3],
+}
+
+impl<'a> Candidate<'a> {
+    fn tried(&self, point: &Vector3<f64>) -> Tried<'a> {
+        let (level, time) = quick(self.level_of, self.stretch, point);
+        Tried {
+            level,
+            order: order_at(level, &self.stretch.at(time), point),
+            level_of: self.level_of,
+            stretch: self.stretch,
+            time,
+            numbers: self.numbers,
+        }
+    }
+}
+
+/// The first few of some candidates.
+fn first<'a>(mut all: Vec<Candidate<'a>>, point: &Vector3<f64>) -> SmallVec<[Tried<'a>; TRIED + 1]> {
+    all.sort_unstable_by(|a, b| a.least.total_cmp(&b.least));
+    let mut first: SmallVec<[Tried; TRIED + 1]> = SmallVec::new();
+    for candidate in all {
+        if first.get(TRIED - 1).is_some_and(|last| candidate.least > last.order) {
+            break;
+        }
+        let own = candidate.tried(point);
+        let is_before = |other: &Tried| (other.order, other.numbers) < (own.order, own.numbers);
+        first.insert(first.partition_point(is_before), own);
+        first.truncate(TRIED);
+    }
+    first
 }
 
 impl<'a> Course<'a> {
@@ -90,13 +129,10 @@ impl<'a> Course<'a> {
             }
             for own in solid.boxes.most_central(&low, &high, CENTRAL) {
                 let stretch = &self.stretches[own];
-                let (value, time) = quick(&solid.level, stretch, middle);
                 all.push(Candidate {
-                    level: value,
-                    order: value + AXIS * from_axis(&stretch.at(time), middle),
+                    least: least_order(&solid.level, stretch, middle),
                     level_of: &solid.level,
                     stretch,
-                    time,
                     numbers: [course, number, own],
                 });
             }
@@ -137,12 +173,7 @@ impl Removed<'_> {
         for (number, course) in self.courses.iter().enumerate() {
             course.candidates(number, points, middle, &mut all);
         }
-        let in_order = |a: &Candidate, b: &Candidate| a.order.total_cmp(&b.order).then(a.numbers.cmp(&b.numbers));
-        if all.len() > TRIED {
-            all.select_nth_unstable_by(TRIED, in_order);
-            all.truncate(TRIED);
-        }
-        all.sort_by(in_order);
+        let all = first(all, middle);
         let mut known = Known {
             held: points.iter().map(|_| false).collect(),
             holder: None,
@@ -181,12 +212,28 @@ impl Removed<'_> {
                 .all(|point| is_inside(level, stretch, point, self.margin))
                 .then_some(recent);
         }
+        let is_held = |time: f32| self.held_at(points, (level, stretch, time)).all(|held| held);
+        if recent.time.is_some_and(is_held) {
+            return Some(recent);
+        }
         let (held, time) = self.held_by(points, (level, stretch, quick(level, stretch, middle).1));
         recent.time = time;
         (!held.contains(&false)).then_some(recent)
     }
 
-    /// Which of some points a solid holds, and when, if it is not straight: about a time.
+    /// Which of some points a solid holds at a time of a stretch.
+    fn held_at(
+        &self,
+        points: &[Vector3<f64>],
+        (level, stretch, time): (&Level, &Stretch, f32),
+    ) -> impl Iterator<Item = bool> {
+        let at = stretch.at(f64::from(time));
+        points
+            .iter()
+            .map(move |point| level_at(level, &at, point) <= -self.margin)
+    }
+
+    /// Which of some points a solid holds, and when, if it is not straight: at a time, or about it.
     fn held_by(&self, points: &[Vector3<f64>], (level, stretch, time): (&Level, &Stretch, f64)) -> (Held, Option<f32>) {
         if stretch.is_straight() {
             // The solid sweeps a convex one.
@@ -194,11 +241,14 @@ impl Removed<'_> {
             let held = own.map(|point| is_inside(level, stretch, point, self.margin));
             (held.collect(), None)
         } else {
-            let time = best_time(level, stretch, points, time) as f32;
-            let at = stretch.at(f64::from(time).min(1.0));
-            let own = points.iter();
-            let held = own.map(|point| level_at(level, &at, point) <= -self.margin);
-            (held.collect(), Some(time.min(1.0)))
+            let held = |time: f32| -> Held { self.held_at(points, (level, stretch, time)).collect() };
+            let first = (time as f32).min(1.0);
+            let of_first = held(first);
+            if !of_first.contains(&false) {
+                return (of_first, Some(first));
+            }
+            let time = (best_time(level, stretch, points, time) as f32).min(1.0);
+            (held(time), Some(time))
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 /// How much a place nearer to the axis counts, beside one that is deeper.
-pub(super) const AXIS: f64 = 0.05;
+const AXIS: f64 = 0.05;
 /// Steps of a search for the best time.
 const STEPS: usize = 12;
 /// Times at which a motion that turns or bends is looked at first.
@@ -26,6 +26,23 @@ pub(crate) fn level_at(level: &Level, at: &Placement, point: &Vector3<f64>) -> f
     let off = point - at.tip;
     let along = off.dot(&at.axis);
     level.at([(off - at.axis * along).norm(), along])
+}
+
+/// Of solids that hold a point as deep, the one whose axis is nearest comes first.
+pub(crate) fn order_at(level: f64, at: &Placement, point: &Vector3<f64>) -> f64 {
+    level + AXIS * from_axis(at, point)
+}
+
+/// A lower bound of that for all times of a stretch: no level and no distance changes faster than the point moves
+/// against the solid. Of a straight one, [`quick`] tells as soon.
+pub(crate) fn least_order(level: &Level, stretch: &Stretch, point: &Vector3<f64>) -> f64 {
+    if stretch.is_straight() {
+        return f64::NEG_INFINITY;
+    }
+    let at = stretch.at(0.5);
+    let far = (point - at.tip).norm();
+    let travel = stretch.travel(far + stretch.travel(0.0, 0.5), 0.5);
+    order_at(level_at(level, &at, point), &at, point) - (1.0 + AXIS) * travel
 }
 
 /// A time at which a point is far inside, without a search; and the level then.
