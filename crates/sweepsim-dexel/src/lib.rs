@@ -40,7 +40,8 @@ pub use dexels::{
 pub use grid::{Frame, FrameError, Grid, GridError};
 pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};
 pub use mesh::{
-    AnalyticSurface, ClusteredMesh, DistanceTo, FaceSurfaces, Mesh, MeshError, Nearest, NearestTriangle, TriangleSoup,
+    AnalyticSurface, ClusteredMesh, DistanceTo, FaceSurfaces, Mesh, MeshError, MeshFault, Nearest, NearestTriangle,
+    TriangleSoup,
 };
 pub use stock::{Stock, StockError};
 pub use tri::{SurfaceEnd, SurfaceEnds, TriDexels, TriDexelsError};

@@ -23,7 +23,7 @@ pub use motion::{Cutter, Piece};
 pub use process::{Movers, Remains, Room, Touched, Work, touched, touched_from};
 pub use recall::{QuestionDigest, Recall};
 pub use search::{Closest, Enclosed, Limits, Tree, closest, closest_from, deepest, deepest_from};
-pub use solid::{Fault, Target};
+pub use solid::Target;
 pub use statement::{OpenBox, Witness};
 pub use tool::{Convex, cover};
 

@@ -20,6 +20,7 @@
 use super::TriDexels;
 use super::cell::{CELLS, EDGES};
 use super::ends::SurfaceEnds;
+use super::held::{Held, Place};
 use super::lattice::{Hit, Lattice};
 use super::plane::Planes;
 use crate::mesh::{Mesh, MeshError, check_vertices};
@@ -32,13 +33,13 @@ pub(crate) fn disagreements(solid: &TriDexels) -> usize {
 
 /// The closed surface, if it needs at most this many vertices.
 pub fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
-    faces_of(&Lattice::new(solid), most, false).map(|(mesh, _)| mesh)
+    faces_of(&Lattice::new(solid), most, &Held::default()).map(|(mesh, _)| mesh)
 }
 
 /// The same, with the interval end that each triangle was made for.
 pub(crate) fn contour_with_ends(solid: &TriDexels, most: usize) -> Result<(Mesh, SurfaceEnds), MeshError> {
     let lattice = Lattice::new(solid);
-    let (mesh, made) = faces_of(&lattice, most, true)?;
+    let (mesh, made) = faces_of(&lattice, most, &Held::default())?;
     let mut ends = SurfaceEnds::default();
     // Triangles of an end follow one another.
     let mut last = None;
@@ -53,16 +54,34 @@ pub(crate) fn contour_with_ends(solid: &TriDexels, most: usize) -> Result<(Mesh,
 }
 
 /// An edge of the lattice: its axis, and where it begins.
-type LatticeEdge = (usize, [usize; 3]);
+pub(super) type LatticeEdge = (usize, [usize; 3]);
 
-/// The mesh, and if that is asked for, the edge of the lattice that each triangle is around.
-fn faces_of(lattice: &Lattice, most: usize, tell: bool) -> Result<(Mesh, Vec<LatticeEdge>), MeshError> {
+/// A mesh, and the edge of the lattice that each triangle is around.
+type Made = (Mesh, Vec<LatticeEdge>);
+
+/// How often more is held, at most, where triangles cross.
+const ROUNDS: usize = 8;
+
+/// The surface of which as much is held as it takes that no triangles cross.
+pub(crate) fn uncrossed(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
+    let (lattice, mut held) = (Lattice::new(solid), Held::default());
+    let (mut mesh, mut made) = faces_of(&lattice, most, &held)?;
+    for _ in 0..ROUNDS {
+        if !held.add(&lattice, &mesh, &made) {
+            break;
+        }
+        (mesh, made) = faces_of(&lattice, most, &held)?;
+    }
+    Ok(mesh)
+}
+
+fn faces_of(lattice: &Lattice, most: usize, held: &Held) -> Result<Made, MeshError> {
     let hits = [0, 1, 2].map(|axis| lattice.hits(axis));
     let find = |axis: usize, at: [usize; 3]| hits[axis].find(lattice, at);
     // Vertices, slab after slab of cells.
     let mut slabs: Vec<Slab> = (0..lattice.points[0] - 1)
         .into_par_iter()
-        .map(|i| Slab::new(lattice, i, &find))
+        .map(|i| Slab::new(lattice, i, &find, held))
         .collect();
     check_vertices(slabs.iter().map(|slab| slab.vertices.len()).sum(), most)?;
     let mut mesh = Mesh::default();
@@ -91,9 +110,9 @@ fn faces_of(lattice: &Lattice, most: usize, tell: bool) -> Result<(Mesh, Vec<Lat
             for (at, hit) in hits[axis].slab(lattice, number) {
                 let face = Face { axis, at, hit };
                 let ring = face.ring(lattice, &vertex);
-                if ring.keys.iter().all(Option::is_none) {
+                if ring.keys.iter().all(Option::is_none) && !held.has_fan(lattice, (axis, at)) {
                     triangles.extend(face.halves(lattice, &mesh, ring.corners));
-                    made.extend(std::iter::repeat_n((axis, at), if tell { 2 } else { 0 }));
+                    made.extend([(axis, at); 2]);
                 } else {
                     rest.push((ring, face));
                 }
@@ -108,11 +127,8 @@ fn faces_of(lattice: &Lattice, most: usize, tell: bool) -> Result<(Mesh, Vec<Lat
         mesh.triangles.extend(triangles);
         edges.extend(made);
         for (ring, face) in rest {
-            let fan = face.fan(lattice, &mesh, ring, &mut extra);
-            around.extend(std::iter::repeat_n(
-                (face.axis, face.at),
-                if tell { fan.len() } else { 0 },
-            ));
+            let fan = face.fan((lattice, held), &mesh, ring, &mut extra);
+            around.extend(std::iter::repeat_n((face.axis, face.at), fan.len()));
             fans.extend(fan);
         }
     }
@@ -135,7 +151,7 @@ struct Slab {
 }
 
 impl Slab {
-    fn new<'a>(lattice: &Lattice, i: usize, find: &impl Fn(usize, [usize; 3]) -> Option<&'a Hit>) -> Self {
+    fn new<'a>(lattice: &Lattice, i: usize, find: &impl Fn(usize, [usize; 3]) -> Option<&'a Hit>, held: &Held) -> Self {
         let [_, rows, levels] = lattice.points.map(|n| n - 1);
         let mut slab = Self {
             vertices: Vec::new(),
@@ -157,6 +173,11 @@ impl Slab {
                 lattice.upper_corners(cell) | corners >> 4
             };
             let kind = &CELLS[usize::from(corners)];
+            let place = if kind.sheets > 0 {
+                held.place(lattice, cell)
+            } else {
+                None
+            };
             for sheet in 0..kind.sheets {
                 let mut planes = Planes::default();
                 for (edge, (axis, offset)) in EDGES.iter().enumerate() {
@@ -170,7 +191,7 @@ impl Slab {
                 }
                 let [lower, upper] = [0, 1].map(|d| [0, 1, 2].map(|c| lattice.coordinate(c, cell[c] + d)));
                 slab.levels.push(k as u32);
-                slab.vertices.push(planes.meet(lower, upper));
+                slab.vertices.push(planes.vertex([lower, upper], place));
                 slab.normals.push(planes.normal());
                 slab.cut.push(planes.is_cut());
             }
@@ -204,12 +225,12 @@ struct Extra {
     /// By the numbers of [`Key`]: the number of the vertex.
     numbers: BTreeMap<(usize, usize, usize), u32>,
     first: Option<u32>,
-    /// Their planes, and the box that must contain them.
-    planes: Vec<(Planes, [[f64; 3]; 2])>,
+    /// Their planes, the box that must contain them, and where in it they are.
+    planes: Vec<(Planes, [[f64; 3]; 2], Option<Place>)>,
 }
 
 impl Extra {
-    fn number(&mut self, lattice: &Lattice, mesh: &Mesh, key: Key, place: [f64; 3], hit: &Hit) -> u32 {
+    fn number(&mut self, (lattice, held): (&Lattice, &Held), mesh: &Mesh, key: Key, place: [f64; 3], hit: &Hit) -> u32 {
         let first = *self.first.get_or_insert(mesh.vertices.len() as u32);
         let planes = &mut self.planes;
         let number = *self
@@ -219,7 +240,11 @@ impl Extra {
                 let coordinates = |p: [usize; 3]| [0, 1, 2].map(|c| lattice.coordinate(c, p[c]));
                 let (lower, mut upper) = (coordinates(key.low), coordinates(key.low.map(|n| n + 1)));
                 upper[key.normal] = lower[key.normal];
-                planes.push((Planes::default(), [lower, upper]));
+                planes.push((
+                    Planes::default(),
+                    [lower, upper],
+                    held.on_face(lattice, (key.normal, key.low)),
+                ));
                 planes.len() as u32 - 1
             });
         planes[number as usize].0.add(place, hit);
@@ -228,8 +253,8 @@ impl Extra {
 
     /// Appends them to the mesh's vertices.
     fn finish(self, mesh: &mut Mesh) {
-        for (planes, [lower, upper]) in &self.planes {
-            mesh.vertices.push(planes.meet(*lower, *upper));
+        for (planes, bounds, place) in &self.planes {
+            mesh.vertices.push(planes.vertex(*bounds, *place));
             mesh.normals.push(planes.normal());
             mesh.cut.push(planes.is_cut());
         }
@@ -240,7 +265,7 @@ impl Extra {
         let first = *self.first.get_or_insert(mesh.vertices.len() as u32);
         let mut planes = Planes::default();
         planes.add(place, hit);
-        self.planes.push((planes, [place; 2]));
+        self.planes.push((planes, [place; 2], Some(Place::Middle)));
         first + self.planes.len() as u32 - 1
     }
 }
@@ -312,12 +337,12 @@ impl Face<'_> {
     }
 
     /// Triangles around a vertex at the interval end, with vertices on the faces that two curves cross.
-    fn fan(&self, lattice: &Lattice, mesh: &Mesh, ring: Ring, extra: &mut Extra) -> Vec<[u32; 3]> {
+    fn fan(&self, (lattice, held): (&Lattice, &Held), mesh: &Mesh, ring: Ring, extra: &mut Extra) -> Vec<[u32; 3]> {
         let place = lattice.place(self.axis, self.at, self.hit);
         let mut polygon: Vec<u32> = Vec::with_capacity(8);
         for (corner, key) in ring.corners.into_iter().zip(ring.keys) {
             polygon.push(corner);
-            polygon.extend(key.map(|key| extra.number(lattice, mesh, key, place, self.hit)));
+            polygon.extend(key.map(|key| extra.number((lattice, held), mesh, key, place, self.hit)));
         }
         let middle = extra.at(mesh, place, self.hit);
         (0..polygon.len())

@@ -1,5 +1,6 @@
 //! Where tangent planes meet.
 
+use super::held::Place;
 use super::lattice::Hit;
 use smallvec::SmallVec;
 
@@ -18,6 +19,8 @@ const SPREAD: f64 = 0.1;
 /// How far beyond its cell, in cells, a vertex may be. The vertex of a cell follows an edge of the solid that passes
 /// close by; so do its neighbours, and their triangles are thin.
 const BEYOND: f64 = 1.0;
+/// The same of one that is held inside.
+const WITHIN: f64 = -1.0 / 64.0;
 /// The weight of the squared distance from the middle, relative to those from the planes, if the vertex is held near
 /// its cell.
 const WEIGHT: f64 = 1e-3;
@@ -38,7 +41,7 @@ impl Planes {
     }
 
     /// The mean of the points.
-    pub fn middle(&self) -> [f64; 3] {
+    fn middle(&self) -> [f64; 3] {
         let places = || self.points.iter().map(|(place, _)| place).chain(&self.bare);
         let count = places().count().max(1) as f64;
         [0, 1, 2].map(|c| places().map(|p| p[c]).sum::<f64>() / count)
@@ -55,9 +58,19 @@ impl Planes {
         }
     }
 
+    /// The vertex of a cell, or on a face, between its lower and upper corner. `place`: where it is held.
+    pub fn vertex(&self, [lower, upper]: [[f64; 3]; 2], place: Option<Place>) -> [f64; 3] {
+        match place {
+            None => self.meet(lower, upper, BEYOND),
+            Some(Place::Half) => self.meet(lower, upper, 0.5),
+            Some(Place::Cell) => self.meet(lower, upper, WITHIN),
+            Some(Place::Middle) => self.middle(),
+        }
+    }
+
     /// The least-squares point of the planes, displaced from the [middle](Self::middle) only in directions that the
-    /// planes determine; if that is far outside the box, the best point near the box.
-    pub fn meet(&self, lower: [f64; 3], upper: [f64; 3]) -> [f64; 3] {
+    /// planes determine; if that is `beyond` the box by more than so many of its sizes, the best point within that.
+    fn meet(&self, lower: [f64; 3], upper: [f64; 3], beyond: f64) -> [f64; 3] {
         let middle = self.middle();
         // AᵀA and Aᵀb of the normals, with b as distances from the middle.
         let (mut a, mut b) = ([[0.0; 3]; 3], [0.0; 3]);
@@ -88,7 +101,7 @@ impl Planes {
             let along = (0..3).map(|c| v[c] * b[c]).sum::<f64>() / value;
             place = [0, 1, 2].map(|c| place[c] + along * v[c]);
         }
-        let beyond = |c: usize| BEYOND * (upper[c] - lower[c]);
+        let beyond = |c: usize| beyond * (upper[c] - lower[c]);
         let bounds = [0, 1, 2].map(|c| [lower[c] - beyond(c) - middle[c], upper[c] + beyond(c) - middle[c]]);
         let off = [0, 1, 2].map(|c| place[c] - middle[c]);
         if (0..3).all(|c| bounds[c][0] <= off[c] && off[c] <= bounds[c][1]) {

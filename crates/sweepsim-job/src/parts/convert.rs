@@ -168,7 +168,7 @@ fn write_solid(
     if let Some(format) = MeshFormat::of(output).filter(|format| *format != MeshFormat::Step) {
         let surface = match solid {
             Solid::Mesh(mesh) => mesh.clone(),
-            Solid::Dexels(_) | Solid::TriDexels(_) => solid.surface()?,
+            Solid::Dexels(_) | Solid::TriDexels(_) => solid.solid_surface()?,
         };
         let (mut mesh, note) = decimated(&surface, options.decimate)?;
         if let Some(note) = note {

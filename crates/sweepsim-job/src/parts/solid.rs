@@ -58,6 +58,14 @@ impl Solid {
         }
     }
 
+    /// The surface as a file: its triangles enclose a solid.
+    pub fn solid_surface(&self) -> Result<Mesh, MeshError> {
+        match self {
+            Self::TriDexels(solid) => solid.solid_surface()?.crisp(CRISP),
+            Self::Dexels(_) | Self::Mesh(_) => self.surface(),
+        }
+    }
+
     /// The surface, to be compared: of a mesh as `triangles`, which are those of it, with its faces if they are known.
     pub fn to_compare<'a>(
         &'a self,

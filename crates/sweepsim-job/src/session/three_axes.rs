@@ -2,7 +2,7 @@
 
 use super::{Session, phase};
 use crate::base::JobError;
-use crate::request::{Directions, Task};
+use crate::request::{Directions, Output, Task};
 use crate::show::CRISP;
 use std::sync::Arc;
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};
@@ -209,8 +209,15 @@ pub(crate) fn solid(session: Session, along_z: &Dexels, report: &mut Report) -> 
 /// The surface of dexels along three axes, with sharp edges drawn sharp.
 pub(crate) fn surface(solid: &TriDexels, session: Session, report: &mut Report) -> Result<Mesh, JobError> {
     session.phase("mesh");
+    // What is verified is looked at; what is simulated may be the next stock.
+    let is_solid = session.request.task != Task::Verify && session.request.wants(Output::Mesh);
     Ok(phase(report, "mesh", || {
-        solid.surface().and_then(|mesh| mesh.crisp(CRISP))
+        let mesh = if is_solid {
+            solid.solid_surface()
+        } else {
+            solid.surface()
+        };
+        mesh.and_then(|mesh| mesh.crisp(CRISP))
     })?)
 }
 

@@ -1,7 +1,6 @@
 //! The solid that must not be cut.
 
 mod cell;
-mod faults;
 mod outside;
 mod polygon;
 mod way;
@@ -9,8 +8,6 @@ mod way;
 pub(crate) use cell::{Cell, MOST_PIECES, MOST_PLANES, MOST_WAYS, Near};
 pub(crate) use outside::is_outside;
 pub(crate) use way::{Normal, Triangle, Way, Written};
-
-pub use faults::Fault;
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -89,13 +86,6 @@ impl Target {
             crowded: AtomicBool::new(false),
             size,
         }
-    }
-
-    /// Where its triangles cross or cover each other, at most so many places: nothing can be proven of what is inside.
-    #[must_use]
-    pub fn faults(&self, most: usize) -> Vec<Fault> {
-        let triangles: Vec<_> = self.triangles.iter().map(|triangle| triangle.corners).collect();
-        faults::faults(&triangles, most)
     }
 
     /// The cube that is divided: its centre and half of its size.

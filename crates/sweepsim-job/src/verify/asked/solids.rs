@@ -1,8 +1,8 @@
 //! Solids as triangles, for proofs about them.
 
 use std::f64::consts::PI;
-use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
-use sweepsim_proof::{Fault, Recall, Target};
+use sweepsim_dexel::{DistanceTo, MeshFault, Stock, TriangleSoup};
+use sweepsim_proof::{Recall, Target};
 
 /// As many faults of a solid are named.
 const FAULTS: usize = 3;
@@ -33,7 +33,7 @@ pub(in crate::verify) fn of_mesh(
     if is_sound {
         return Ok(solid);
     }
-    if let Some(faults) = faulty(&solid, what) {
+    if let Some(faults) = faulty(mesh, what) {
         return Err(faults);
     }
     recall.keep(&sound, Vec::new());
@@ -41,15 +41,15 @@ pub(in crate::verify) fn of_mesh(
 }
 
 /// What is wrong with the triangles of a solid, with some of the places.
-fn faulty(solid: &Target, what: &str) -> Option<String> {
+fn faulty(solid: &TriangleSoup, what: &str) -> Option<String> {
     let faults = solid.faults(FAULTS + 1);
     if faults.is_empty() {
         return None;
     }
-    let place = |fault: &Fault| {
+    let place = |fault: &MeshFault| {
         let (what, at) = match fault {
-            Fault::Doubled(at) => ("has a face twice", at),
-            Fault::Crossing(at) => ("intersects itself", at),
+            MeshFault::Doubled(at) => ("has a face twice", at),
+            MeshFault::Crossing(at) => ("intersects itself", at),
             _ => return "is no solid".to_owned(),
         };
         let [x, y, z] = at.map(|c| format!("{c:.3}"));
