@@ -9,8 +9,8 @@ use crate::time::path_parts::PathPart;
 use std::sync::OnceLock;
 use sweepsim_motion::{BoundingCylinder, Tool};
 
-/// How often the height of a tool is divided by the cube root of two.
-const RUNGS: i32 = 18;
+/// How often the height of a tool is divided by the sixth root of two.
+const RUNGS: i32 = 36;
 
 /// A tool that was cut off, and what is prepared of it.
 pub(crate) struct ShortTool {
@@ -46,7 +46,7 @@ impl ShortTools {
     pub fn new(tool: &Tool) -> Self {
         let cylinder = tool.bounding_cylinder();
         let [low, high] = cylinder.z;
-        let height = |n: i32| low + (high - low) * (f64::from(-n) / 3.0).exp2();
+        let height = |n: i32| low + (high - low) * (f64::from(-n) / 6.0).exp2();
         Self {
             cylinder,
             rungs: (1..=RUNGS).map(|n| (height(n), OnceLock::new())).collect(),

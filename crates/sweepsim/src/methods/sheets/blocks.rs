@@ -6,7 +6,7 @@ use crate::methods::harvest::Collector;
 use crate::methods::lattice::Lattice;
 
 /// Blocks of so few lines are visited line by line.
-const FEW: usize = 24;
+const FEW: usize = 16;
 
 /// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is
 /// greater than the last.
@@ -78,7 +78,9 @@ fn blocks<W: Copy>(
         if wide * high <= FEW {
             for i in i[0]..=i[1] {
                 let x = lines.coordinate(0, i);
-                for j in j[0]..=j[1] {
+                // To and fro, so that each line is next to the one before.
+                for step in j[0]..=j[1] {
+                    let j = if i % 2 == 0 { step } else { j[0] + j[1] - step };
                     if lines.asks(i, j) {
                         visit(lines.line(i, j), [x, lines.coordinate(1, j)], what);
                     }
@@ -116,7 +118,8 @@ pub(crate) fn around(points: &[[f64; 2]], margin: f64) -> [Range; 2] {
 /// How far a block is from a straight way, at least.
 pub(crate) fn distance([x, y]: [Range; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let centre = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])];
-    let reach = 0.5 * (x[1] - x[0]).hypot(y[1] - y[0]);
+    let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let reach = 0.5 * length(x[1] - x[0], y[1] - y[0]);
     let (way, arm) = (
         [to[0] - from[0], to[1] - from[1]],
         [centre[0] - from[0], centre[1] - from[1]],
@@ -128,5 +131,5 @@ pub(crate) fn distance([x, y]: [Range; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     } else {
         0.0
     };
-    (arm[0] - share * way[0]).hypot(arm[1] - share * way[1]) - reach
+    length(arm[0] - share * way[0], arm[1] - share * way[1]) - reach
 }

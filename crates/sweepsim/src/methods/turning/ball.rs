@@ -91,9 +91,9 @@ impl Shell for Ball {
     type Posed = Centre;
     type Limits = BallLimits;
 
-    fn along(&self, span: &Span, accuracy: Accuracy, _: f64) -> Result<(BallLimits, [Range; 2]), Verdict> {
+    fn along(&self, span: &Span, accuracy: Accuracy, spacing: f64) -> Result<(BallLimits, [Range; 2]), Verdict> {
         let (ends, bounds) = ([&span.from, &span.to], &span.bounds);
-        if !span.last && span.is_far(self.centre.abs(), self.radius) {
+        if !span.last && span.is_far(self.centre.abs(), self.radius, spacing) {
             return Err(Verdict::Long);
         }
         let limits = self.limits(ends, bounds, accuracy.slack).ok_or(Verdict::Long)?;

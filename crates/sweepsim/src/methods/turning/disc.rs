@@ -128,12 +128,12 @@ impl Shell for Disc {
     type Posed = Placed;
     type Limits = DiscLimits;
 
-    fn along(&self, span: &Span, accuracy: Accuracy, _: f64) -> Result<(DiscLimits, [Range; 2]), Verdict> {
+    fn along(&self, span: &Span, accuracy: Accuracy, spacing: f64) -> Result<(DiscLimits, [Range; 2]), Verdict> {
         let (ends, bounds, slack) = ([&span.from, &span.to], &span.bounds, accuracy.slack);
         if self.keeps_its_sign(ends, bounds, slack) {
             return Err(Verdict::Settled(Vec::new()));
         }
-        if !span.last && span.is_far(self.height.abs(), self.radii[1]) {
+        if !span.last && span.is_far(self.height.abs(), self.radii[1], spacing) {
             return Err(Verdict::Long);
         }
         let least = bounds.rise[0].max(-bounds.rise[1]);

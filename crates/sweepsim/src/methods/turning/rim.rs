@@ -13,7 +13,7 @@ use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::disc::Placed;
 use super::spans::{Span, Verdict};
-use super::zero::{Known, Sample, start, zero};
+use super::zero::{Known, Sample, Turn, start, zero};
 use crate::cutter::outline::{Rim, fan_normal};
 use crate::methods::harvest::{Collector, unit};
 use crate::methods::sheets::Undecided::{self, Close};
@@ -250,7 +250,7 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
             ),
         };
-        let found = zero(
+        let (found, known) = zero(
             bracket,
             ([true; 2], first),
             |t| {
@@ -286,9 +286,18 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 if !(faces[0].abs() > error && faces[1].abs() > error) {
                     return None;
                 }
+                let tilt = arm.z * inverse;
+                let gradient = [
+                    2.0 * inwards * (arm.x - tilt * placed.axis.x),
+                    2.0 * inwards * (arm.y - tilt * placed.axis.y),
+                ];
+                let known = |t: f64| Known::new(line, t, (gradient, sample.slope), last.as_ref());
                 let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
+                if alike {
+                    return Some((None, known(t)));
+                }
                 let rest = turned * turned * (sample.rise.abs() + fast.abs()) * step.abs();
-                if !(alike || turned <= TURNED && 2.0 * rest <= height_tolerance) {
+                if !(turned <= TURNED && 2.0 * rest <= height_tolerance) {
                     return None;
                 }
                 let height = self.rim.height;
@@ -308,29 +317,24 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 let later_faces = [n * out + m * along, p * out + q * along];
                 let [radial, axial] = fan_normal(&self.rim.normals, later_faces);
                 let normal = later * (radial / self.rim.radius) + axis * axial;
-                let tilt = arm.z * inverse;
-                let gradient = [
-                    2.0 * inwards * (arm.x - tilt * placed.axis.x),
-                    2.0 * inwards * (arm.y - tilt * placed.axis.y),
-                ];
-                let known = Known::new(line, t, (gradient, sample.slope), last.as_ref());
-                Some((
+                // The turn of the circle about the tool, from below to above along the meridian, is that of its disc.
+                let jump = if ((placed.axis.z > 0.0) == (inwards < 0.0)) == (faces[0] < 0.0) {
+                    -1
+                } else {
+                    1
+                };
+                let turn = Turn {
                     t,
-                    placed.centre.z + arm.z + step * (sample.rise + 0.5 * lift * step),
-                    (faces, normal, placed.axis.z),
-                    known,
-                ))
+                    height: placed.centre.z + arm.z + step * (sample.rise + 0.5 * lift * step),
+                    normal,
+                };
+                Some((Some((turn, jump)), known(t)))
             },
         )?;
-        let (t, height, ([a, b], normal, up), known) = found;
         before.set(Some(known));
-        if (a < 0.0) == (b < 0.0) {
-            return Ok(());
+        if let Some((Turn { t, height, normal }, jump)) = found {
+            collector.crossing(number, height, jump, unit(normal), (self.source)(t));
         }
-        // The turn of the circle about the tool, from below to above along the meridian, is that of its disc.
-        let orientation = if (up > 0.0) == (inwards < 0.0) { 1 } else { -1 };
-        let jump = if a < 0.0 { -orientation } else { orientation };
-        collector.crossing(number, height, jump, unit(normal), (self.source)(t));
         Ok(())
     }
 }

@@ -19,9 +19,10 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Whether a point at this height goes so far that ranges over a block of lines tell little.
-    pub fn is_far(&self, height: f64, radius: f64) -> bool {
-        self.bounds.length * (self.bounds.speed + height * self.bounds.rate) > radius
+    /// Whether a point at this height goes so far that ranges over a block of lines tell little, and over so many lines
+    /// that more spans cost less.
+    pub fn is_far(&self, height: f64, radius: f64, spacing: f64) -> bool {
+        self.bounds.length * (self.bounds.speed + height * self.bounds.rate) > 0.5 * radius + 16.0 * spacing
     }
 }
 

@@ -80,7 +80,7 @@ impl Known {
     }
 }
 
-/// Where a sheet turns.
+/// A crossing: where a sheet turns, or a rim passes.
 pub(super) struct Turn {
     pub t: f64,
     pub height: f64,

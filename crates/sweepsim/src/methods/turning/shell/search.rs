@@ -105,6 +105,10 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
                     meeting: shell.meet(posed, at),
                 };
                 let ends = [&view(span.from.t, &a), &view(span.to.t, &b)];
+                if self.stays(ends, sheets) {
+                    visited += 1;
+                    return Ok(());
+                }
                 self.halvings = HALVINGS;
                 let found = self.between(collector, Line { number, at, sheets }, ends, 0);
                 visited += 1;
@@ -118,6 +122,21 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
             return Verdict::Intricate;
         }
         Verdict::Settled(left)
+    }
+
+    /// Whether a line is certain to be inside all the time, and no sheet turns: so for most lines that are visited.
+    #[inline]
+    fn stays(&self, [from, to]: [&View<S::Posed>; 2], sheets: [bool; 2]) -> bool {
+        let (shell, limits, length) = (self.shell, self.limits, to.t - from.t);
+        let (a, b) = (&from.meeting, &to.meeting);
+        let same_sign = |sheet: usize| {
+            (a.g[sheet] >= 0.0) == (b.g[sheet] >= 0.0)
+                && !shell.doubtful(limits, a, sheet)
+                && !shell.doubtful(limits, b, sheet)
+                && shell.falls(limits, [(from.at, a), (to.at, b)], length, sheet) != Falls::Unknown
+        };
+        (0..2).all(|sheet| !sheets[sheet] || same_sign(sheet))
+            && shell.passage(limits, [a, b], length) == Passage::Inside
     }
 
     fn between(
