@@ -2,23 +2,21 @@
 
 mod analytic;
 mod clip;
-mod cluster;
-mod decimate;
 mod distance;
 mod faults;
+mod fewer;
 mod furthest;
 mod near;
-mod quadric;
 mod rays;
 mod thicken;
 mod tree;
 
 use crate::grid::Frame;
 pub use analytic::{AnalyticSurface, FaceSurfaces};
-pub use cluster::ClusteredMesh;
 pub use distance::{DistanceTo, Nearest, NearestTriangle, nearest_on};
 pub use faults::MeshFault;
 pub(crate) use faults::pairs as faulty_pairs;
+pub use fewer::ClusteredMesh;
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 use thiserror::Error;

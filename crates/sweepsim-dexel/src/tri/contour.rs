@@ -20,9 +20,9 @@
 use super::TriDexels;
 use super::cell::{CELLS, EDGES};
 use super::ends::SurfaceEnds;
-use super::held::{Held, Place};
-use super::lattice::{Hit, Lattice};
-use super::plane::Planes;
+use super::held::Held;
+use super::lattice::{Hit, Lattice, LatticeEdge};
+use super::plane::{Place, Planes};
 use crate::mesh::{Mesh, MeshError, check_vertices};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -52,9 +52,6 @@ pub(crate) fn contour_with_ends(solid: &TriDexels, most: usize) -> Result<(Mesh,
     }
     Ok((mesh, ends))
 }
-
-/// An edge of the lattice: its axis, and where it begins.
-pub(super) type LatticeEdge = (usize, [usize; 3]);
 
 /// A mesh, and the edge of the lattice that each triangle is around.
 type Made = (Mesh, Vec<LatticeEdge>);

@@ -6,30 +6,10 @@
 //! held may be chamfered. Cones of two curves in the same cell may cross even so: then their vertices are held in the
 //! middles of their ends.
 
-use super::contour::LatticeEdge;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, LatticeEdge};
+use super::plane::Place;
 use crate::mesh::{Mesh, faulty_pairs};
 use rustc_hash::{FxHashMap, FxHashSet};
-
-/// Where the vertices of a cell are held: nearer and nearer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Place {
-    /// Half a cell beyond it, at most.
-    Half,
-    /// In the cell.
-    Cell,
-    /// In the middle of the ends.
-    Middle,
-}
-
-impl Place {
-    fn nearer(self) -> Self {
-        match self {
-            Self::Half => Self::Cell,
-            Self::Cell | Self::Middle => Self::Middle,
-        }
-    }
-}
 
 /// What is held: vertices of cells, and ends with fans around them.
 #[derive(Debug, Default)]

@@ -237,6 +237,9 @@ impl<'a> Lattice<'a> {
     }
 }
 
+/// An edge of the lattice: its axis, and where it begins.
+pub(super) type LatticeEdge = (usize, [usize; 3]);
+
 /// The end of an interval on an edge of the lattice.
 pub(super) struct Hit {
     /// The number of the point before it.

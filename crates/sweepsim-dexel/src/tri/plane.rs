@@ -1,6 +1,5 @@
 //! Where tangent planes meet.
 
-use super::held::Place;
 use super::lattice::Hit;
 use smallvec::SmallVec;
 
@@ -11,6 +10,27 @@ pub(super) struct Planes {
     /// Points whose normal is not known.
     bare: Vec<[f64; 3]>,
     cut: bool,
+}
+
+/// Where the vertices of a cell are held: nearer and nearer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Place {
+    /// Half a cell beyond it, at most.
+    Half,
+    /// In the cell.
+    Cell,
+    /// In the middle of the ends.
+    Middle,
+}
+
+impl Place {
+    /// The next nearer one.
+    pub fn nearer(self) -> Self {
+        match self {
+            Self::Half => Self::Cell,
+            Self::Cell | Self::Middle => Self::Middle,
+        }
+    }
 }
 
 /// Directions in which the planes' normals spread by less than this (as a sine) do not determine where the planes meet.

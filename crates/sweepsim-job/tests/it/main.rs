@@ -10,4 +10,5 @@ mod memory;
 mod quickstart;
 mod registers;
 mod scope;
+mod surface;
 mod walls;

@@ -3,8 +3,7 @@
 use super::deepest::Search;
 use super::found::{Found, Wanted, enough};
 use super::known::{Asking, share};
-use super::part::{Part, parts};
-use crate::motion::{Cutter, Run};
+use crate::motion::{Cutter, Part, Run, parts};
 use crate::recall::{Recall, Writing};
 use crate::solid::{Cell, Target};
 use crate::statement::{OpenBox, Witness};

@@ -1,7 +1,6 @@
 //! Answers to looks at parts of a work that are known.
 
-use super::part::{Part, groups};
-use crate::motion::Cutter;
+use crate::motion::{Cutter, Part, groups};
 use crate::recall::{Answer, QuestionDigest, Recall, Writing};
 use crate::solid::{Cell, Target};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -39,7 +38,8 @@ impl Asking<'_> {
         self.recall.digest(&question.0)
     }
 
-    /// What is found in some parts, where moves count from the first of each: known, or looked for. `None` if the monitor cancelled the work.
+    /// What is found in some parts, where moves count from the first of each: known, or looked for. `None` if the
+    /// monitor cancelled the work.
     pub fn answers<A: Answer + Send>(
         &self,
         target: &Target,

@@ -10,7 +10,6 @@ mod known;
 mod near;
 mod nearest;
 mod pair;
-mod part;
 mod reach;
 mod trace;
 

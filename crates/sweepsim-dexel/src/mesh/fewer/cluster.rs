@@ -1,7 +1,7 @@
 //! Meshes of a bounded number of triangles, to be looked at.
 
 use super::quadric::Quadric;
-use super::{DistanceTo, Mesh, MeshError};
+use crate::mesh::{DistanceTo, Mesh, MeshError};
 use crate::vector::sub;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

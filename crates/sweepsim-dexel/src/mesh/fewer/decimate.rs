@@ -1,8 +1,8 @@
 //! Meshes of fewer triangles, within a certified distance.
 
-use super::near::is_certainly_within;
 use super::quadric::Quadric;
-use super::{DistanceTo, Mesh, MeshError};
+use crate::mesh::near::is_certainly_within;
+use crate::mesh::{DistanceTo, Mesh, MeshError};
 use crate::vector::{dot, length, normal_of, sub};
 use alum::{DVec3, Decimater, HH, Handle, HasDecimation, HasIterators, HasTopology, PolyMeshF64, VH};
 use rustc_hash::FxHashMap;

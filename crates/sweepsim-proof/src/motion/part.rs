@@ -1,11 +1,11 @@
-//! Parts of the work of a search.
+//! Parts of the work of a search: blocks of moves.
 
-use crate::motion::{Cutter, blocks, digest};
+use super::{Cutter, blocks, digest};
 use std::ops::Range;
 
 /// A block of moves of a path.
 #[derive(Clone)]
-pub(super) struct Part {
+pub(crate) struct Part {
     pub path: usize,
     pub moves: Range<usize>,
     /// Of where it begins.
@@ -16,7 +16,7 @@ pub(super) struct Part {
 const TOGETHER: [usize; 3] = [16, 16, 64];
 
 /// All that there are.
-pub(super) fn parts(cutters: &[Cutter]) -> Vec<Part> {
+pub(crate) fn parts(cutters: &[Cutter]) -> Vec<Part> {
     let of_one = |(path, cutter): (usize, &Cutter)| {
         let part = |moves: Range<usize>| Part {
             path,
@@ -30,7 +30,7 @@ pub(super) fn parts(cutters: &[Cutter]) -> Vec<Part> {
 
 /// Some parts in groups, which begin where their content says so, too. Where blocks begin, the last digits of digests
 /// are the same.
-pub(super) fn groups(parts: &[Part]) -> impl Iterator<Item = &[Part]> {
+pub(crate) fn groups(parts: &[Part]) -> impl Iterator<Item = &[Part]> {
     blocks(parts.len(), TOGETHER, |number| parts[number].digest >> 16).map(|group| &parts[group])
 }
 
