@@ -59,7 +59,7 @@ type Made = (Mesh, Vec<LatticeEdge>);
 /// How often more is held, at most, where triangles cross.
 const ROUNDS: usize = 8;
 
-/// The surface of which as much is held as it takes that no triangles cross.
+/// The surface of which as much is held as it takes that no triangles cross, as far as [`ROUNDS`] go.
 pub(crate) fn uncrossed(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
     let (lattice, mut held) = (Lattice::new(solid), Held::default());
     let (mut mesh, mut made) = faces_of(&lattice, most, &held)?;

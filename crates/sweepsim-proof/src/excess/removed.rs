@@ -59,27 +59,23 @@ struct Candidate<'a> {
     numbers: [usize; 3],
 }
 
-/// The same, and how far outside of it the point is at the best time that was found.
+/// A candidate, and how far outside of it the point is at the best time that was found.
 struct Tried<'a> {
+    candidate: Candidate<'a>,
     level: f64,
     /// The least comes first: where a point is, and the axis is near. Over a floor many are as deep.
     order: f64,
-    level_of: &'a Level,
-    stretch: &'a Stretch,
     time: f64,
-    numbers: [usize; 3],
 }
 
 impl<'a> Candidate<'a> {
-    fn tried(&self, point: &Vector3<f64>) -> Tried<'a> {
+    fn tried(self, point: &Vector3<f64>) -> Tried<'a> {
         let (level, time) = quick(self.level_of, self.stretch, point);
         Tried {
-            level,
             order: order_at(level, &self.stretch.at(time), point),
-            level_of: self.level_of,
-            stretch: self.stretch,
+            candidate: self,
+            level,
             time,
-            numbers: self.numbers,
         }
     }
 }
@@ -93,8 +89,10 @@ fn first<'a>(mut all: Vec<Candidate<'a>>, point: &Vector3<f64>) -> SmallVec<[Tri
             break;
         }
         let own = candidate.tried(point);
-        let is_before = |other: &Tried| (other.order, other.numbers) < (own.order, own.numbers);
-        first.insert(first.partition_point(is_before), own);
+        let key = |tried: &Tried| (tried.order, tried.candidate.numbers);
+        let is_before = |other: &Tried| key(other) < key(&own);
+        let place = first.partition_point(is_before);
+        first.insert(place, own);
         first.truncate(TRIED);
     }
     first
@@ -180,8 +178,9 @@ impl Removed<'_> {
             is_removed: all.iter().any(|own| own.level <= -self.margin),
             nearest: None,
         };
-        for (number, candidate) in all.iter().enumerate() {
-            let (held, time) = self.held_by(points, (candidate.level_of, candidate.stretch, candidate.time));
+        for (number, tried) in all.iter().enumerate() {
+            let candidate = &tried.candidate;
+            let (held, time) = self.held_by(points, (candidate.level_of, candidate.stretch, tried.time));
             let is_whole = !held.contains(&false);
             let [course, solid, stretch] = candidate.numbers;
             let holder = Some(Holder {
