@@ -93,6 +93,11 @@ impl Chunk {
         numbers: &mut Vec<u32>,
         out: &mut Vec<PackedInterval>,
     ) {
+        if table.moves.is_empty() {
+            // All of the stock.
+            out.extend_from_slice(pieces);
+            return;
+        }
         self.make_room(table.moves.len().min(2 * pieces.len()), out);
         numbers.clear();
         numbers.resize(table.moves.len(), u32::MAX);

@@ -292,12 +292,18 @@ impl Dexels {
                     _ => return,
                 };
                 // The whole other chunk, line after line, with its moves numbered as in this one's table.
-                packed.clear();
-                chunk.adopt(more.table(), more.all(), numbers, packed);
+                let theirs = if chunk.moves.moves.is_empty() {
+                    chunk.moves = more.moves.clone();
+                    more.all()
+                } else {
+                    packed.clear();
+                    chunk.adopt(more.table(), more.all(), numbers, packed);
+                    &packed[..]
+                };
                 let mut from = 0;
                 chunk.rebuild(scratch, |line, old, out| {
                     let to = from + more.line(line).len();
-                    run(old, &packed[from..to], out);
+                    run(old, &theirs[from..to], out);
                     from = to;
                 });
                 if chunk.is_empty() {

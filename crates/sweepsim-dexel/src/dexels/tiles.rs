@@ -4,6 +4,7 @@ use super::chunk::{Chunk, LINES};
 use super::{Dexels, GridMismatch};
 use crate::grid::Grid;
 use rayon::prelude::*;
+use std::ops::Range;
 use thiserror::Error;
 
 /// Why tiles do not make up a grid.
@@ -73,10 +74,40 @@ impl Dexels {
             return None;
         }
         let all = self.grid.cells()[1];
-        Some(Self::copied(*tile, |index| {
+        let mut own = Self::empty(*tile);
+        own.copy(0..own.chunks.len(), |index| {
             let (i, j) = tile.place(index);
             (self, (i0 + i) * all + j0 + j, rows - 1 - j)
-        }))
+        });
+        Some(own)
+    }
+
+    /// Divides them into [tiles](Grid::tiles) of at most `most` columns and rows, and releases what was copied on the
+    /// way.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Dexels, Grid, Stock};
+    /// let grid = Grid::new([0.0, 0.0], [5.0, 3.0], [50, 30])?;
+    /// let block = Stock::Block { min: [0.0; 3], max: [5.0, 3.0, 1.0] }.dexels(&grid)?;
+    /// let tiles = block.clone().into_tiles(20);
+    /// assert_eq!(tiles.len(), 6);
+    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, block);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn into_tiles(mut self, most: usize) -> Vec<Self> {
+        let grids = self.grid.tiles(most);
+        if let [_] = grids[..] {
+            return vec![self];
+        }
+        let rows = self.grid.cells()[1];
+        let mut tiles = Vec::with_capacity(grids.len());
+        for side_by_side in grids.chunk_by(|a, b| a.first()[0] == b.first()[0]) {
+            tiles.extend(side_by_side.iter().filter_map(|grid| self.tile(grid)));
+            let end = side_by_side[0].first()[0] + side_by_side[0].cells()[0] - self.grid.first()[0];
+            self.chunks[..end * rows / LINES].fill(None);
+        }
+        tiles
     }
 
     /// The same lines on another grid with as many columns and rows: nothing is computed anew.
@@ -102,9 +133,9 @@ impl Dexels {
     /// ```
     /// use sweepsim_dexel::{Dexels, Grid, Stock};
     /// let grid = Grid::new([0.0, 0.0], [5.0, 5.0], [50, 40])?;
-    /// let ball = Stock::Ball { centre: [2.0, 3.0, 1.0], radius: 1.9 };
-    /// let tiles = grid.tiles(16).iter().map(|tile| ball.dexels(tile)).collect::<Result<Vec<_>, _>>()?;
-    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, ball.dexels(&grid)?);
+    /// let whole = Stock::Ball { centre: [2.0, 3.0, 1.0], radius: 1.9 };
+    /// let tiles = grid.tiles(16).iter().map(|tile| whole.dexels(tile)).collect::<Result<Vec<_>, _>>()?;
+    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, whole.dexels(&grid)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_tiles(grid: Grid, mut tiles: Vec<Self>) -> Result<Self, TilesError> {
@@ -131,7 +162,8 @@ impl Dexels {
             }
             of_column[i..i + m].iter_mut().for_each(|list| list.push(number));
         }
-        let from = |number: &u32| tiles[*number as usize].grid.first()[1] - j0;
+        let grids: Vec<Grid> = tiles.iter().map(|tile| tile.grid).collect();
+        let from = |number: &u32| grids[*number as usize].first()[1] - j0;
         for (i, list) in of_column.iter_mut().enumerate() {
             list.sort_by_key(from);
             let mut next = 0;
@@ -144,7 +176,7 @@ impl Dexels {
                 if first > next {
                     return Err(TilesError::Missing { i, j });
                 }
-                next = first + tiles[*number as usize].grid.cells()[1];
+                next = first + grids[*number as usize].cells()[1];
             }
             if next < rows {
                 return Err(TilesError::Missing {
@@ -153,24 +185,46 @@ impl Dexels {
                 });
             }
         }
-        Ok(Self::copied(grid, |index| {
-            let (i, j) = grid.place(index);
-            let list = &of_column[i];
-            let number = list[list.partition_point(|number| from(number) <= j) - 1];
-            let tile = &tiles[number as usize];
-            let ([first_i, first_j], [_, rows]) = (tile.grid.first(), tile.grid.cells());
-            let own = j + j0 - first_j;
-            (tile, (i + i0 - first_i) * rows + own, rows - 1 - own)
-        }))
+        let mut joined = Self::empty(grid);
+        let end = |tile: &Grid| tile.first()[0] + tile.cells()[0] - i0;
+        let mut ends: Vec<usize> = grids.iter().map(end).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let mut done = 0;
+        for column in ends {
+            // All chunks of which no line is in a later column; in the end, all chunks.
+            let chunks = done..if column == columns {
+                joined.chunks.len()
+            } else {
+                column * rows / LINES
+            };
+            done = chunks.end;
+            joined.copy(chunks, |index| {
+                let (i, j) = grid.place(index);
+                let list = &of_column[i];
+                let number = list[list.partition_point(|number| from(number) <= j) - 1];
+                let tile = &tiles[number as usize];
+                let ([first_i, first_j], [_, rows]) = (tile.grid.first(), tile.grid.cells());
+                let own = j + j0 - first_j;
+                (tile, (i + i0 - first_i) * rows + own, rows - 1 - own)
+            });
+            // What was copied is released: a chunk that is not done begins in one of the columns that are kept.
+            let kept = done * LINES / rows;
+            for tile in tiles.iter_mut().filter(|tile| end(&tile.grid) <= kept) {
+                tile.chunks = Vec::new();
+            }
+        }
+        Ok(joined)
     }
 
-    /// Copies stored lines: `from` tells of a line of `grid` which line of which dexels it is, and how many behind it
-    /// go on from there.
-    fn copied<'a>(grid: Grid, from: impl Fn(usize) -> (&'a Self, usize, usize) + Sync) -> Self {
-        let mut dexels = Self::empty(grid);
-        let chunks = dexels.chunks.par_iter_mut().enumerate();
+    /// Copies stored lines to some chunks: `from` tells of a line which line of which dexels it is, and how many behind
+    /// it go on from there.
+    fn copy<'a>(&mut self, chunks: Range<usize>, from: impl Fn(usize) -> (&'a Self, usize, usize) + Sync) {
+        let (lines, first) = (self.grid.len(), chunks.start);
+        let chunks = self.chunks[chunks].par_iter_mut().enumerate();
         chunks.for_each_init(Default::default, |(scratch, numbers), (number, slot)| {
-            let end = grid.len().min((number + 1) * LINES);
+            let number = first + number;
+            let end = lines.min((number + 1) * LINES);
             let mut next = number * LINES;
             let stretches = std::iter::from_fn(|| {
                 (next < end).then(|| {
@@ -189,6 +243,49 @@ impl Dexels {
                 *slot = Some(chunk);
             }
         });
-        dexels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Interval, Stock};
+
+    /// Material on a grid whose chunks end anywhere in its columns, in tiles of all widths and heights.
+    #[test]
+    fn tiles_of_any_size_are_joined_in_any_order() {
+        let grid = Grid::new([0.0, 0.0], [37.0, 29.0], [37, 29]).unwrap();
+        let mut whole = Stock::Block {
+            min: [2.0, 1.0, 0.0],
+            max: [36.0, 28.0, 5.0],
+        }
+        .dexels(&grid)
+        .unwrap();
+        for line in (0..grid.len()).step_by(3) {
+            whole
+                .subtract(line, &[Interval::between(1.0, 2.0 + line as f64 * 1e-3)])
+                .unwrap();
+        }
+        let cuts = [
+            (0..10, 0..29),
+            (10..37, 0..5),
+            (10..20, 5..29),
+            (20..36, 5..17),
+            (20..36, 17..29),
+            (36..37, 5..29),
+        ];
+        let tile =
+            |(is, js): &(Range<usize>, Range<usize>)| whole.tile(&grid.tile(is.clone(), js.clone()).unwrap()).unwrap();
+        let mut tiles: Vec<Dexels> = cuts.iter().map(tile).collect();
+        for _ in 0..tiles.len() {
+            tiles.rotate_left(1);
+            assert_eq!(Dexels::from_tiles(grid, tiles.clone()).unwrap(), whole);
+        }
+        for most in [1, 7, 29, 36, 37] {
+            let tiles = whole.clone().into_tiles(most);
+            let grids: Vec<Grid> = tiles.iter().map(|tile| *tile.grid()).collect();
+            assert_eq!(grids, grid.tiles(most));
+            assert_eq!(Dexels::from_tiles(grid, tiles).unwrap(), whole);
+        }
     }
 }

@@ -11,6 +11,7 @@ mod run;
 mod schedule;
 mod short_tools;
 mod simulation;
+mod spare;
 
 pub(crate) use audit::SweptLines;
 pub use boundary_operator::{BoundaryOperator, UnknownBoundaryOperator};
@@ -21,9 +22,10 @@ pub use probe::{Probe, probe};
 pub use ray::{Ray, RayError};
 pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
-pub(crate) use schedule::{CHUNK, Spaces, SpareLists};
+pub(crate) use schedule::CHUNK;
 pub(crate) use simulation::STRETCH;
 pub(crate) use simulation::heights;
 pub use simulation::{
     Cut, Simulation, SurfaceSource, TriSimulation, simulate, simulate_tiles, simulate_tri, sweep_all,
 };
+pub(crate) use spare::SpareLists;

@@ -5,6 +5,7 @@ use crate::error::SweepError;
 use crate::methods::translation::GAP;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::short_tools::ShortTools;
+use crate::sweep::spare::Spaces;
 use crate::time::path_parts::{self, Kind, PathPart};
 use crate::tolerances::Tolerances;
 use std::ops::Range;
@@ -19,6 +20,7 @@ pub(crate) struct Plan {
     pub short: Arc<ShortTools>,
     pub parts: Vec<PathPart>,
     pub tolerances: Tolerances,
+    pub spaces: Spaces,
     /// The largest coordinate of tool, lines and path.
     size: f64,
 }
@@ -59,7 +61,11 @@ impl Plan {
             false => self.size,
         };
         let prepared = (Arc::clone(&self.cutter), Arc::clone(&self.short));
-        Self::prepared(prepared, (tool, path, 0..path.moves()), frame, size, options)
+        let plan = Self::prepared(prepared, (tool, path, 0..path.moves()), frame, size, options)?;
+        Ok(Self {
+            spaces: Arc::clone(&self.spaces),
+            ..plan
+        })
     }
 
     fn prepared(
@@ -81,6 +87,7 @@ impl Plan {
             cutter,
             short,
             tolerances,
+            spaces: Spaces::default(),
             size,
         })
     }

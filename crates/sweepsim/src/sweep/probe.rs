@@ -1,7 +1,6 @@
 //! The intervals of a sweep on single lines.
 
 use crate::error::SweepError;
-use crate::methods::workspace::Workspace;
 use crate::sweep::audit::Repair;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
@@ -10,7 +9,6 @@ use crate::sweep::report::UnresolvedReason;
 use crate::sweep::schedule::CHUNK;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use sweepsim_dexel::{Dexels, End, Frame, Grid, Interval};
 use sweepsim_motion::{Path, Tool};
@@ -94,32 +92,25 @@ pub(crate) fn probe_lines(
 ) -> Result<Vec<Probe>, SweepError> {
     let plan = Plan::new(tool, path, frame, lines.iter().flatten().copied(), options)?;
     let monitor = &Latch::new(monitor);
-    let spaces = Mutex::new(Vec::new());
     // Half a cell about the line, which only gives the search a length scale.
     let half = f64::max(0.01 * plan.cutter.reach, 16.0 * plan.tolerances.rounding());
     let one = |[x, y]: &[f64; 2]| -> Probe {
         let cell = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]);
         let grid = cell.map_err(|_| UnresolvedReason::SmallestBox)?;
         let job = plan.job((tool, plan.parts.len()), &grid, options, monitor);
-        let kept = spaces
-            .lock()
-            .ok()
-            .and_then(|mut spaces: std::sync::MutexGuard<Vec<Workspace>>| spaces.pop());
-        let mut own = kept.unwrap_or_else(|| Workspace::new(&plan.cutter, plan.tolerances));
         let mut volume = Dexels::empty(grid);
         let mut probed: Result<(), UnresolvedReason> = Ok(());
-        for chunk in plan.parts.chunks(CHUNK) {
-            let whole = Repair {
-                attempt: 0,
-                ..Repair::first(job.repairs.of_each(1))
-            };
-            let found = job.repair(chunk, 0, whole, &mut own).0;
-            let united = found.and_then(|intervals| Ok(volume.unite(0, &intervals)?));
-            probed = probed.and(united);
-        }
-        if let Ok(mut spaces) = spaces.lock() {
-            spaces.push(own);
-        }
+        job.with_space(|space| {
+            for chunk in plan.parts.chunks(CHUNK) {
+                let whole = Repair {
+                    attempt: 0,
+                    ..Repair::first(job.repairs.of_each(1))
+                };
+                let found = job.repair(chunk, 0, whole, space).0;
+                let united = found.and_then(|intervals| Ok(volume.unite(0, &intervals)?));
+                probed = probed.and(united);
+            }
+        });
         probed.map(|()| volume.at(0).to_vec())
     };
     let found = lines.par_iter().map(one).collect();

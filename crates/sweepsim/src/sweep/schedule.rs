@@ -21,13 +21,14 @@ use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
+use crate::sweep::spare::{Spaces, SpareLists};
 use crate::time::bent::bent;
 use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
 use sweepsim_solve::Monitor;
@@ -62,19 +63,13 @@ impl Plan {
                 spacing: grid.spacing(),
                 system_rounding: self.tolerances.rounding(),
             },
-            spaces: Arc::default(),
+            spaces: Arc::clone(&self.spaces),
             lists: Arc::default(),
             repairs: Arc::new(RepairBudget::new(parts)),
             monitor,
         }
     }
 }
-
-/// Workspaces of one tool that are not in use, for any tolerances.
-pub(crate) type Spaces = Arc<Mutex<Vec<Workspace>>>;
-
-/// Lists of crossings that are not in use, empty.
-pub(crate) type SpareLists = Arc<Mutex<Vec<Vec<Numbered>>>>;
 
 /// What all chunks of a sweep share.
 pub(crate) struct SweepJob<'a> {

@@ -4,7 +4,7 @@
 //! there is no material above.
 
 use crate::cutter::Cutter;
-use crate::sweep::schedule::Spaces;
+use crate::sweep::spare::Spaces;
 use crate::time::path_parts::PathPart;
 use std::sync::OnceLock;
 use sweepsim_motion::{BoundingCylinder, Tool};

@@ -3,7 +3,7 @@
 use crate::error::SweepError;
 use crate::methods::lattice::LineMask;
 use crate::sweep::heights::{Box3, HeightMap, window};
-use crate::sweep::{CHUNK, Method, Options, Plan, Spaces, SpareLists, SweptLines};
+use crate::sweep::{CHUNK, Method, Options, Plan, SpareLists, SweptLines};
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
@@ -25,7 +25,6 @@ pub struct MovingSolid<'a> {
     boxes: Vec<Box3>,
     /// One for each block of parts.
     hulls: Vec<Box3>,
-    spaces: Spaces,
     lists: SpareLists,
 }
 
@@ -62,16 +61,16 @@ impl<'a> MovingSolid<'a> {
     ) -> Result<Self, SweepError> {
         let extent = grids.iter().flat_map(|grid| grid.min().into_iter().chain(grid.max()));
         let plan = Plan::of_moves((tool, path, moves), grids[0].frame(), extent, options)?;
-        Ok(Self::planned(tool, plan, Arc::default(), options))
+        Ok(Self::planned(tool, plan, options))
     }
 
     /// The same solid along another path. It will be swept on the same grids, one of which is `grid`.
     pub fn along(&self, path: &Path, grid: &Grid, options: &Options) -> Result<Self, SweepError> {
         let plan = self.plan.along((self.tool, path), grid.frame(), options)?;
-        Ok(Self::planned(self.tool, plan, Arc::clone(&self.spaces), options))
+        Ok(Self::planned(self.tool, plan, options))
     }
 
-    fn planned(tool: &'a Tool, plan: Plan, spaces: Spaces, options: &Options) -> Self {
+    fn planned(tool: &'a Tool, plan: Plan, options: &Options) -> Self {
         let cylinder = tool.bounding_cylinder();
         // More than all displacements together.
         let margin = options.tolerance;
@@ -82,7 +81,6 @@ impl<'a> MovingSolid<'a> {
             boxes,
             tool,
             plan,
-            spaces,
             lists: SpareLists::default(),
         }
     }
@@ -227,7 +225,6 @@ impl<'a> MovingSolid<'a> {
         let mut job = self
             .plan
             .job((self.tool, self.plan.parts.len()), grid, &options, monitor);
-        job.spaces = Arc::clone(&self.spaces);
         job.lists = Arc::clone(&self.lists);
         let short = match method {
             Method::Mixed => self.plan.short.shortest(self.tool, parts, top + self.plan.gap()),

@@ -162,14 +162,9 @@ pub fn simulate(
     monitor: &dyn Monitor,
 ) -> Result<Simulation, SweepError> {
     let grid = *stock.grid();
-    let tiles = grid.tiles(options.tile);
-    let stock = match &tiles[..] {
-        [_] => vec![stock],
-        several => several.iter().filter_map(|tile| stock.tile(tile)).collect(),
-    };
-    let mut remaining = Vec::with_capacity(tiles.len());
+    let mut remaining = Vec::new();
     let mut statistics = Statistics::default();
-    for tile in simulate_tiles(stock, cuts, options, monitor)? {
+    for tile in simulate_tiles(stock.into_tiles(options.tile), cuts, options, monitor)? {
         statistics.merge(&tile.statistics);
         remaining.push(tile.remaining);
     }
