@@ -162,7 +162,7 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
             });
         }
         if let Some((from, before)) = before
-            && let Some(minutes) = minutes(before, &pose, from, &position)
+            && let Some(minutes) = minutes(before, &pose, [from, &position], program.units.in_mm())
         {
             for (letter, largest, moved) in machine.speeds(from, &position) {
                 let needed = moved / minutes;
@@ -182,7 +182,7 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
 }
 
 /// How long a feed move takes, if that is known. Feeds are of the tip along its way; of a turn in place, in degrees.
-fn minutes(before: &ProgramPose, pose: &ProgramPose, from: &Position, to: &Position) -> Option<f64> {
+fn minutes(before: &ProgramPose, pose: &ProgramPose, [from, to]: [&Position; 2], unit: f64) -> Option<f64> {
     let feed = pose.feed.filter(|feed| !pose.rapid && *feed > 0.0)?;
     match pose.feed_mode {
         FeedMode::InverseTime => Some(1.0 / feed),
@@ -190,7 +190,7 @@ fn minutes(before: &ProgramPose, pose: &ProgramPose, from: &Position, to: &Posit
             let square = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
             let way = square(before.pose.tip(), pose.pose.tip()).sqrt();
             let turn = square(from.abc, to.abc).sqrt();
-            let length = if way > 0.0 { way } else { turn };
+            let length = if way > 0.0 { way / unit } else { turn };
             (length > 0.0).then_some(length / feed)
         }
         FeedMode::PerRevolution => None,
