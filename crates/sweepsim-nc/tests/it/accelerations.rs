@@ -212,6 +212,18 @@ fn usage_counts_accelerations() {
     near(&[program(&mill([1000.0; 3], "")).usage()[0].seconds], &[1.1]);
 }
 
+/// It left out turns in place and the largest speeds of axes, where no axis accelerates.
+#[test]
+fn usage_takes_as_long_as_the_moves() {
+    let text = "G21\nT1 M6\nM428\nG0 X0 Y0 Z0 C0 A0\nG1 A30 F360\nG1 X100 F6000\n";
+    let usage = |options: &ReadOptions| gcode::read(text, options).unwrap().usage()[0].seconds;
+    near(&[usage(&ReadOptions::default())], &[5.0 + 1.0]);
+    let slow = options(
+        "Machine(name: \"slow\", table: [(letter: 'A', axis: (1, 0, 0))], linear: [(letter: 'X', speed: 600)])",
+    );
+    near(&[usage(&slow)], &[5.0 + 10.0]);
+}
+
 /// A path of straight moves: the ends, and the speed on each in mm/s.
 #[derive(Clone, Debug)]
 struct Chain {
