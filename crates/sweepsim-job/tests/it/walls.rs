@@ -265,3 +265,28 @@ fn cuts_that_touch_the_sides_or_each_other_leave_nothing() {
     let two = judged(&(pass(5.0) + &pass(11.0)), 12.0);
     assert!(two.findings().is_empty(), "{:?}", two.report().findings);
 }
+
+/// Beside the stock there is no line: a part that is longer than its stock passed without a word.
+#[test]
+fn targets_beyond_the_grid_are_named() {
+    let longer = |end: f64| {
+        let low = [0.0, 0.0, -10.0];
+        let request = Request::from_program(
+            "face.nc",
+            "T1 M6\nS900 M3\nG0 X-30 Y20 Z5\nG0 Z-2\nG1 X90 F600\nG0 Z5\nM30\n",
+        )
+        .tool(1, Tool::flat(25.0, 20.0).unwrap())
+        .stock(Stock::Block {
+            min: low,
+            max: [60.0, 40.0, 0.0],
+        })
+        .target(TriangleSoup::block(low, [end, 40.0, -2.0]))
+        .limits(0.05, 0.1)
+        .cells([60, 40]);
+        let outcome = request.plan().unwrap().run(&()).unwrap();
+        outcome.report().notes.join("\n")
+    };
+    let note = "the target reaches 5 mm beyond the grid: what is missing there is not seen";
+    assert!(longer(65.0).contains(note), "{}", longer(65.0));
+    assert!(!longer(60.0).contains("beyond the grid"));
+}
