@@ -314,7 +314,7 @@ pub(crate) struct GridOptions {
     /// Uses the grid of this job or dexel file.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "area")]
     pub grid: Option<PathBuf>,
-    /// The area of the grid [default: that of the mesh].
+    /// The area of the grid [default: that of the mesh, or of both meshes].
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = area, allow_hyphen_values = true)]
     pub area: Option<[f64; 4]>,
     /// The number of dexels, like 300x200 [default: square cells, 300 along the longer side].
