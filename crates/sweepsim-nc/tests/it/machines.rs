@@ -150,3 +150,21 @@ fn turns_of_the_table_take_as_long_as_their_degrees() {
         );
     }
 }
+
+/// A feed in inverse time is that of its block: each chord took as long as all of them should.
+#[test]
+fn chords_share_the_time_of_their_block() {
+    let mut options = ReadOptions::default();
+    options.machine = Machine::named("trunnion-ac").unwrap();
+    let text = "G21 G90\nT1 M6\nG0 X20 Y0 Z0 A0 C0\nG93 G1 X25 C90 F2\nX20 C0 A30 F3\nG18 G2 X30 I5 K0 F1\nG1 A0 F4\n";
+    for exact_arcs in [false, true] {
+        options.exact_arcs = exact_arcs;
+        let program = gcode::read(text, &options).unwrap();
+        let times = program.times();
+        for (line, expected) in [(4, 30.0), (5, 20.0), (6, 60.0), (7, 15.0)] {
+            let all = program.poses.iter().zip(&times).filter(|(pose, _)| pose.line == line);
+            let seconds: f64 = all.filter_map(|(_, time)| time.seconds).sum();
+            assert!((seconds - expected).abs() < 1e-9, "line {line}: {seconds}");
+        }
+    }
+}
