@@ -13,10 +13,10 @@ pub(crate) struct JudgeOptions {
     pub first: bool,
     /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres, instead of the job's
     /// [default: 0.1 each].
-    #[arg(long, value_name = "GOUGE,EXCESS", value_parser = pair)]
+    #[arg(long, value_name = "GOUGE,EXCESS", value_parser = pair, allow_hyphen_values = true)]
     pub limits: Option<[f64; 2]>,
     /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
-    #[arg(long, value_name = "MM", value_parser = length)]
+    #[arg(long, value_name = "MM", value_parser = length, allow_hyphen_values = true)]
     pub clearance: Option<f64>,
     /// Takes shanks and holders larger by half the diagonal between dexels, and cutters in rapids and beside fixtures:
     /// what they touch beside a dexel is found as well.
@@ -37,10 +37,10 @@ pub(crate) struct JudgeOptions {
     pub moves: bool,
     /// Judges the machine for all places of the part this far from where it is, like 5,5,2 in millimetres along x, y
     /// and z, one way or the other.
-    #[arg(long, value_name = "X,Y,Z", value_parser = triple)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = triple, allow_hyphen_values = true)]
     pub offset_range: Option<[f64; 3]>,
     /// Judges the machine for all tools this much longer or shorter than it takes them, in millimetres.
-    #[arg(long, value_name = "MM", value_parser = length)]
+    #[arg(long, value_name = "MM", value_parser = length, allow_hyphen_values = true)]
     pub length_range: Option<f64>,
     /// Looks for another place of the part if the program collides with the machine or meets a limit: a box of offsets
     /// that is proven free. Takes as long as up to some hundred proofs.

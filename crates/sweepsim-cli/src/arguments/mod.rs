@@ -54,10 +54,10 @@ pub(crate) enum Command {
     Inspect(InspectOptions),
     /// Converts a program, tool library, mesh or dexel file to another format, by the extensions.
     ///
-    /// Meshes (.stl .ply .glb .3mf .vtp .step) and dexels (dexels.csv .dexels .npz) can be converted to each other
-    /// and to pictures (.png), and dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf,
-    /// Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and text with one line per move (.txt), tool libraries to the
-    /// tools of a job (.ron).
+    /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to
+    /// pictures (.png), .step files to all of these, and dexels to .vtu. Programs are converted to G-code (.nc .ngc
+    /// .tap, Siemens's .mpf, Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and text with one line per move (.txt),
+    /// tool libraries to the tools of a job (.ron).
     Convert(ConvertOptions),
     /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by
     /// distance.
@@ -151,10 +151,10 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "AXES")]
     pub directions: Option<Directions>,
     /// Writes meshes of fewer triangles, nowhere further than this from the others, in millimetres.
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = tolerance, allow_hyphen_values = true)]
     pub decimate: Option<f64>,
     /// The tolerance in millimetres, instead of the job's.
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
     /// The largest number of dexels along the side of a tile. Tiles are computed one by one, and are what shards
     /// consist of: another size changes results, by less than the tolerance.
@@ -198,16 +198,16 @@ pub(crate) struct SectionOptions {
     #[command(flatten)]
     pub program: ProgramOptions,
     /// The plane: x=3.5, y=…, z=…, or a,b,c=d for a x + b y + c z = d, in millimetres.
-    #[arg(long, value_name = "PLANE", value_parser = plane)]
+    #[arg(long, value_name = "PLANE", value_parser = plane, allow_hyphen_values = true)]
     pub plane: Plane,
     /// The largest distance of the polylines from the curves, in millimetres.
-    #[arg(long, value_name = "MM", default_value_t = 0.01, value_parser = tolerance)]
+    #[arg(long, value_name = "MM", default_value_t = 0.01, value_parser = tolerance, allow_hyphen_values = true)]
     pub chord: f64,
     /// The output folder [default: out/NAME].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
     /// The tolerance in millimetres, instead of the job's.
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
     /// Prints neither progress nor a summary.
     #[arg(long)]
@@ -263,7 +263,7 @@ pub(crate) struct ConvertOptions {
     #[command(flatten)]
     pub view: ViewOptions,
     /// Writes meshes of fewer triangles, nowhere further than this from the others, in millimetres.
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = tolerance, allow_hyphen_values = true)]
     pub decimate: Option<f64>,
     /// Prints no summary.
     #[arg(long)]
@@ -282,11 +282,11 @@ pub(crate) struct CompareOptions {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
     /// Distances up to this count as 0, in millimetres.
-    #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: f64,
     /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres; or a job, whose limits
     /// count, by region if it has regions [default: 0.1 each].
-    #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits)]
+    #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits, allow_hyphen_values = true)]
     pub limits: Option<DeviationLimits>,
     /// Lays the part onto the target first, by a rigid motion that is said with what is left: best (least squares of
     /// distances), features (of planes and cylinders of a STEP target), or datum=FACE,FACE,FACE (three-two-one by plane
@@ -294,7 +294,7 @@ pub(crate) struct CompareOptions {
     #[arg(long, value_name = "HOW", value_parser = Alignment::from_str)]
     pub align: Option<Alignment>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    #[arg(long, value_name = "MM", value_parser = tolerance, allow_hyphen_values = true)]
     pub range: Option<f64>,
     #[command(flatten)]
     pub grid: GridOptions,
@@ -314,7 +314,7 @@ pub(crate) struct GridOptions {
     /// Uses the grid of this job or dexel file.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "area")]
     pub grid: Option<PathBuf>,
-    /// The area of the grid [default: that of the mesh].
+    /// The area of the grid [default: that of the mesh, or of both meshes].
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = area, allow_hyphen_values = true)]
     pub area: Option<[f64; 4]>,
     /// The number of dexels, like 300x200 [default: square cells, 300 along the longer side].

@@ -41,7 +41,7 @@ pub(crate) struct DialectOptions {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "G-code that is written")]
 pub(crate) struct WritingOptions {
-    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain, grbl or okuma [default: siemens for
+    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: siemens for
     /// .mpf, heidenhain for .h, else linuxcnc].
     #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
     pub dialect: Option<String>,

@@ -172,7 +172,6 @@ fn located(finding: &ReportedFinding, report: &Report) -> String {
     text
 }
 
-/// How long some moves take, and what they remove.
 /// `X −45.4 … 42.9 of −250 … 250: 204.6 left at a.nc:12`.
 fn travelled(axis: &AxisTravel) -> String {
     let number = |value: f64| words::length((1e3 * value).round() / 1e3);
@@ -190,6 +189,7 @@ fn travelled(axis: &AxisTravel) -> String {
     text
 }
 
+/// How long some moves take, and what they remove.
 fn worked(work: &WorkSummary) -> String {
     let mut text = format!(
         "{} (feed {}, rapid {}), {} mm cut and {} mm rapid",
@@ -211,10 +211,11 @@ fn worked(work: &WorkSummary) -> String {
     }
     if let (Some(depth), Some(width), Some(idle)) = (work.depth, work.width, work.idle_moves) {
         text += &format!(
-            ", up to {} mm deep and {} mm wide on the lines, {} that remove nothing",
+            ", up to {} mm deep and {} mm wide on the lines, {} that {} nothing",
             words::measure(depth),
             words::measure(width),
-            words::counted(idle as u64, "feed move")
+            words::counted(idle as u64, "feed move"),
+            if idle == 1 { "removes" } else { "remove" }
         );
     }
     text

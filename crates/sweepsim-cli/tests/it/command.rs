@@ -311,6 +311,18 @@ fn bad_usage_is_an_error() {
     }
 }
 
+/// A minus sign was taken for another option, even where it is right.
+#[test]
+fn values_may_begin_with_a_minus_sign() {
+    let workdir = Workdir::new(JOB);
+    workdir.good(&["section", "job.ron", "--plane", "-1,0,0=-3", "--out", "out", "--quiet"]);
+    let said = workdir.bad(&["verify", "job.ron", "--clearance", "-1"]);
+    assert!(
+        said.contains("expected a number of millimetres, 0 or greater"),
+        "{said}"
+    );
+}
+
 #[test]
 fn a_folder_that_cannot_be_written_is_found_before_the_work() {
     let workdir = Workdir::new(JOB);

@@ -104,3 +104,34 @@ fn a_wall_moved() {
     let workdir = simulated(&[("short", block(8.13)), ("long", block(8.15))]);
     forms_tell(&workdir, "short", "long", 0.02, 1e-6);
 }
+
+/// What the target has beside the part was seen by no line: its volume was less than it is, and no region was missing.
+#[test]
+fn what_is_missing_beside_the_part_is_found() {
+    let block = |name: &str, side: f64| {
+        let stock = format!("Block(min: ({side}, -10, 0), max: (10, 10, 5))");
+        (name.to_owned(), stock)
+    };
+    let [short, long] = [block("short", -10.0), block("long", -12.5)];
+    let workdir = simulated(&[(&short.0, short.1), (&long.0, long.1)]);
+    let [short, long] = ["short/part.ply", "long/part.ply"];
+    let missing = compared(&workdir, short, long);
+    assert!((missing.target_volume - 2250.0).abs() < 1e-3, "{missing:?}");
+    assert!((missing.missing_volume - 250.0).abs() < 50.0, "{missing:?}");
+    assert_eq!(missing.regions.len(), 1, "{missing:?}");
+    assert!(missing.warnings.is_empty(), "{missing:?}");
+    // Where the grid was asked for, it is said.
+    let more = [
+        "--area",
+        "-10,-10,10,10",
+        "--cells",
+        "50x50",
+        "--out",
+        "cmp",
+        "--size",
+        "60x40",
+    ];
+    let words = workdir.good(&[&["compare", short, long][..], &more].concat());
+    let warning = "warning  the target reaches 2.5 mm beyond the grid: volumes and regions leave out what is there";
+    assert!(words.contains(warning), "{words}");
+}

@@ -4,7 +4,7 @@ use super::align::{self, Alignment};
 use super::deviation;
 use super::faces::face_at;
 use super::solid::{GridOptions, Solid};
-use crate::base::{JobError, Sink};
+use crate::base::{JobError, Sink, words};
 use crate::request::ViewOptions;
 use crate::show::{bounds, picture, share, soup};
 use crate::verify::targets;
@@ -139,10 +139,12 @@ impl CompareRequest {
         }
         let [part, target] = both;
         let (mesh, goal) = (part.surface()?, target.surface()?);
-        let around = bounds(&mesh).ok_or_else(|| JobError::file(&self.part, "this part is empty"))?;
-        if bounds(&goal).is_none() {
-            return Err(JobError::file(&self.target, "this target is empty"));
-        }
+        let own = bounds(&mesh).ok_or_else(|| JobError::file(&self.part, "this part is empty"))?;
+        let of_goal = bounds(&goal).ok_or_else(|| JobError::file(&self.target, "this target is empty"))?;
+        let around = [
+            [0, 1, 2].map(|k| own[0][k].min(of_goal[0][k])),
+            [0, 1, 2].map(|k| own[1][k].max(of_goal[1][k])),
+        ];
         let grid = match (part.grid(), target.grid(), self.grid.grid(Some(around))?) {
             (Some(grid), ..) | (None, Some(grid), _) | (None, None, Some(grid)) => grid,
             (None, None, None) => return Err(JobError::run("no grid to compare on")),
@@ -240,7 +242,15 @@ impl Pair<'_> {
             .unwrap_or(round(f64::from(largest).max(request.tolerance)));
         let go_on = share(monitor, |part| part);
         let (picture, missed) = picture(&request.view, &mesh, Some((&values, range)), &go_on)?;
-        report.warnings = missed;
+        for (what, mesh) in [("part", &mesh), ("target", &goal)] {
+            if let Some(far) = targets::beyond(mesh.vertices.iter().copied(), &grid, report.limits[0]) {
+                report.warnings.push(format!(
+                    "the {what} reaches {} mm beyond the grid: volumes and regions leave out what is there",
+                    words::length(far)
+                ));
+            }
+        }
+        report.warnings.extend(missed);
         let seconds = start.elapsed().as_secs_f64();
         report.seconds.insert("picture".to_owned(), seconds);
         Ok(Difference { report, picture })

@@ -259,7 +259,10 @@ fn path(
     let (output, name) = (&*options.output, options.name());
     let mut lost = Vec::new();
     match extension {
-        "csv" => sink.write(&name, &mut |mut file| table::write(&program.poses, &mut file))?,
+        "csv" => sink.write(&name, &mut |mut file| {
+            lost = table::write_program(program, &mut file)?;
+            Ok(())
+        })?,
         "cls" | "clsf" | "apt" | "ncl" => sink.write(&name, &mut |mut file| {
             lost = write::clsf(program, &mut file)?;
             Ok(())

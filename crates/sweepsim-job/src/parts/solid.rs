@@ -111,7 +111,7 @@ impl Solid {
 pub struct GridOptions {
     /// Uses the grid of this job or dexel file.
     pub grid: Option<PathBuf>,
-    /// The area of the grid: x0, y0, x1, y1. Without one, that of the mesh.
+    /// The area of the grid: x0, y0, x1, y1. Without one, that of the mesh, or of both meshes.
     pub area: Option<[f64; 4]>,
     /// The number of dexels. Without one, square cells, 300 along the longer side.
     pub cells: Option<[usize; 2]>,

@@ -150,7 +150,8 @@ pub(super) fn describe(session: Session, done: &Computed, report: &mut Report) {
     report.notes.splice(0..0, session.plan.notes());
     report.warnings.splice(0..0, session.plan.warnings());
     if request.task != Task::Sweep {
-        let paths = report.paths.as_ref();
+        // Of a run that ended early it is not known what the later ones would remove.
+        let paths = report.paths.as_ref().filter(|_| !done.stopped);
         let removed: Option<Vec<f64>> = paths.map(|paths| paths.iter().map(|path| path.removed).collect());
         let more = warnings::after(job, done.dexels(), report.volume_removed, removed.as_deref());
         report.warnings.extend(more);

@@ -3,7 +3,7 @@
 use super::proof::Certified;
 use super::texts::{ProgramTexts, name_of};
 use super::{axes, proof, targets, work};
-use crate::base::JobError;
+use crate::base::{JobError, words};
 use crate::session::{Session, phase};
 use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
 use sweepsim_dexel::DistanceTo;
@@ -89,6 +89,17 @@ pub(super) fn describe(
             report.notes.push(format!(
                 "{:.3} mm³ of the target are outside the stock: they were missing before the first cut",
                 found.beyond_stock
+            ));
+        }
+        let corners = job
+            .target
+            .iter()
+            .flat_map(|target| target.mesh.triangles.iter().flatten());
+        let limit = job.limits.as_ref().map_or(targets::LIMIT, |limits| limits.gouge);
+        if let Some(far) = targets::beyond(corners.copied(), &job.grid, limit) {
+            report.notes.push(format!(
+                "the target reaches {} mm beyond the grid: what is missing there is not seen",
+                words::length(far)
             ));
         }
         if job.limits.is_none() {

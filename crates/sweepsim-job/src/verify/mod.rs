@@ -23,10 +23,11 @@ use crate::base::{JobError, words};
 use crate::request::Output;
 use crate::session::{Session, phase, reported};
 use crate::shards::{Gathered, Purpose, TilingSet};
-use program::{JudgedProgram, JudgedTile};
+use program::{JudgedProgram, JudgedTile, slivers};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use sweepsim::verify::{AreaShare, Deviations, Judgement, Look, Target, TileDeviation, deviations_along, joined};
-use sweepsim_dexel::{Dexels, End, Grid, Interval, Line, Source};
+use sweepsim_dexel::{Dexels, End, Grid, Source};
 use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
 
 /// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
@@ -70,17 +71,9 @@ impl Aside {
     /// Drops what is thinner than the tolerance between two cuts. Moves that are swept together leave nothing there,
     /// but each run is swept by itself.
     fn drop_slivers(&mut self, tolerance: f64) {
+        let is_cut = |end: End| end.source != Source::Stock;
         for set in &mut self.sets {
-            let is_thin = |[lower, upper]: [f64; 2]| upper - lower <= tolerance;
-            let is_cut = |end: End| end.source != Source::Stock;
-            let is_sliver =
-                |own: &Interval| is_thin([own.lower.z, own.upper.z]) && is_cut(own.lower) && is_cut(own.upper);
-            let thin = set.iter().filter(|(_, line)| line.heights().any(is_thin));
-            let kept = |line: Line| line.iter().filter(|own| !is_sliver(own)).collect();
-            let kept: Vec<(usize, Vec<Interval>)> = thin.map(|(number, line)| (number, kept(line))).collect();
-            for (number, line) in kept {
-                set.set(number, &line).expect("some of the intervals of a line");
-            }
+            slivers::drop_where(set, tolerance, |own| is_cut(own.lower) && is_cut(own.upper));
         }
     }
 }
@@ -275,7 +268,11 @@ fn deviating(
 ) -> Result<Deviations, JobError> {
     let job = session.job;
     let own;
-    let along_z = match (&looks[0].deviations[..], &looks[0].dexels) {
+    let remaining: Vec<_> = looks
+        .iter()
+        .map(|look| slivers::without(&look.dexels, job.tolerance))
+        .collect();
+    let along_z = match (&looks[0].deviations[..], &remaining[0]) {
         // Not known where the first finding was looked for, but nothing was found.
         ([], remaining) => {
             own = [TileDeviation::new(stock, remaining, target, AreaShare::Whole)];
@@ -283,26 +280,26 @@ fn deviating(
         }
         (known, _) => known,
     };
-    let aside = sets.iter().zip(looks).skip(1);
+    let aside = sets.iter().zip(looks.iter().zip(&remaining)).skip(1);
     let aside = aside.filter(|(set, _)| matches!(set.purpose, Purpose::Judge { compare: Some(_), .. }));
-    let known = |(set, look): (&TilingSet, _)| {
+    let known = |(set, (look, remaining)): (&TilingSet, (_, _))| {
         let stock = set.whole_stock(&job.stock);
         let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
         let target = targets::on(session, target, &set.grid);
         let target = target.map_err(|error| session.failure(format!("target: {error}")))?;
-        Ok((stock, target, look))
+        Ok((stock, target, look, remaining))
     };
-    let aside: Vec<(Dexels, Target, &Gathered)> = aside.map(known).collect::<Result<_, JobError>>()?;
+    let aside: Vec<(Dexels, Target, &Gathered, &Cow<Dexels>)> = aside.map(known).collect::<Result<_, JobError>>()?;
     let mut all = vec![Look {
         tiles: along_z,
         stock,
-        remaining: &looks[0].dexels,
+        remaining: &remaining[0],
         target,
     }];
-    all.extend(aside.iter().map(|(stock, target, look)| Look {
+    all.extend(aside.iter().map(|(stock, target, look, remaining)| Look {
         tiles: &look.deviations,
         stock,
-        remaining: &look.dexels,
+        remaining,
         target,
     }));
     Ok(deviations_along(&all))

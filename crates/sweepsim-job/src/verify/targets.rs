@@ -132,6 +132,16 @@ pub(crate) fn regions(found: &Deviations, limits: Option<&Limits>) -> Vec<Report
     found.regions.iter().map(region).collect()
 }
 
+/// How far a surface reaches beyond the lines of a grid, if that is more than the limit.
+pub(crate) fn beyond(corners: impl Iterator<Item = [f64; 3]>, grid: &Grid, limit: f64) -> Option<f64> {
+    let (min, max) = (grid.min(), grid.max());
+    let far = corners.map(|p| {
+        let p = grid.frame().from_world(p);
+        [0, 1].map(|k| (min[k] - p[k]).max(p[k] - max[k]))
+    });
+    Some(far.flatten().fold(0.0, f64::max)).filter(|far| *far > limit)
+}
+
 pub(super) fn summed(deviation: &Deviation) -> DeviationSummary {
     let mut summary = DeviationSummary::default();
     (summary.max, summary.mean, summary.rms) = (deviation.max, deviation.mean, deviation.rms);

@@ -22,22 +22,38 @@ pub(super) fn place(path: &JobPath, number: usize, folder: &Path) -> Option<(Str
 pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement) -> Vec<MoveSummary> {
     let job = session.job;
     let folder = session.folder();
+    // What comes after the first finding was not followed.
+    let last = done.findings.iter().map(|finding| (finding.path, finding.number)).min();
+    let last = last.filter(|_| done.stopped);
+    let is_made = |path: usize, number: usize| last.is_none_or(|last| (path, number) <= last);
     // By set-up and tool.
     let mut works: BTreeMap<(usize, u32), WorkSummary> = BTreeMap::new();
-    for (path, removal) in job.paths.iter().zip(&done.paths) {
+    for (index, (path, removal)) in job.paths.iter().zip(&done.paths).enumerate() {
         let work = works.entry((path.setup, path.tool)).or_default();
         let mut seconds = path.seconds.iter();
         for (number, length) in path.path.tip_lengths().enumerate() {
-            work.add_move(path.rapid.get(number), seconds.next().flatten(), length);
+            let seconds = seconds.next().flatten();
+            if is_made(index, number) {
+                work.add_move(path.rapid.get(number), seconds, length);
+            }
         }
-        work.dwell_seconds += path.dwell_seconds;
-        work.removed += removal.volume;
+        if is_made(index, usize::MAX) {
+            work.dwell_seconds += path.dwell_seconds;
+        }
+        // Where a run ended early, moves that were looked at together with the last one may have removed some of it.
+        work.removed += match last {
+            Some(_) if !done.moves.is_empty() => {
+                let own = done.moves.iter().filter(|own| own.path == index);
+                own.filter(|own| is_made(index, own.number)).map(|own| own.volume).sum()
+            }
+            _ => removal.volume,
+        };
     }
     let mut rows = Vec::with_capacity(done.moves.len());
     for removal in &done.moves {
         let path = &job.paths[removal.path];
-        if removal.number >= path.path.moves() {
-            // A single pose.
+        // A single pose has none.
+        if removal.number >= path.path.moves() || !is_made(removal.path, removal.number) {
             continue;
         }
         let mut row = MoveSummary::default();

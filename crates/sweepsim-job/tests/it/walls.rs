@@ -237,3 +237,56 @@ fn without_a_target_nothing_is_kept_for_a_checker() {
         "{rapid:?}"
     );
 }
+
+/// Rounding leaves skins of 2e-10 mm on the sides of the stock and between passes, as high as the cut is deep: they
+/// were excess.
+#[test]
+fn cuts_that_touch_the_sides_or_each_other_leave_nothing() {
+    let judged = |text: &str, width: f64| {
+        let (low, high) = ([0.0, 2.0, -10.0], |z| [40.0, 2.0 + width, z]);
+        let request = Request::from_program("step.nc", format!("T1 M6\nS900 M3\n{text}G0 Z5\nM30\n"))
+            .tool(1, Tool::flat(3.0, 20.0).unwrap())
+            .stock(Stock::Block {
+                min: low,
+                max: high(0.0),
+            })
+            .target(TriangleSoup::block(low, high(-2.0)))
+            .limits(0.05, 0.1)
+            .cells([80, 2 * width as usize])
+            .directions(Directions::Xyz);
+        request.plan().unwrap().run(&()).unwrap()
+    };
+    let pass = |y: f64| format!("G0 X-8 Y{y} Z5\nG0 Z-2\nG1 X48 F600\nG0 Z5\n");
+    let one = judged(&pass(5.0), 6.0);
+    let report = one.report();
+    assert_eq!(one.verdict(), Some(Verdict::Pass), "{:?}", report.findings);
+    assert!(report.excess.as_ref().unwrap().max < 1e-6, "{:?}", report.excess);
+    // Whether nothing at all is left between the passes is not known.
+    let two = judged(&(pass(5.0) + &pass(11.0)), 12.0);
+    assert!(two.findings().is_empty(), "{:?}", two.report().findings);
+}
+
+/// Beside the stock there is no line: a part that is longer than its stock passed without a word.
+#[test]
+fn targets_beyond_the_grid_are_named() {
+    let longer = |end: f64| {
+        let low = [0.0, 0.0, -10.0];
+        let request = Request::from_program(
+            "face.nc",
+            "T1 M6\nS900 M3\nG0 X-30 Y20 Z5\nG0 Z-2\nG1 X90 F600\nG0 Z5\nM30\n",
+        )
+        .tool(1, Tool::flat(25.0, 20.0).unwrap())
+        .stock(Stock::Block {
+            min: low,
+            max: [60.0, 40.0, 0.0],
+        })
+        .target(TriangleSoup::block(low, [end, 40.0, -2.0]))
+        .limits(0.05, 0.1)
+        .cells([60, 40]);
+        let outcome = request.plan().unwrap().run(&()).unwrap();
+        outcome.report().notes.join("\n")
+    };
+    let note = "the target reaches 5 mm beyond the grid: what is missing there is not seen";
+    assert!(longer(65.0).contains(note), "{}", longer(65.0));
+    assert!(!longer(60.0).contains("beyond the grid"));
+}

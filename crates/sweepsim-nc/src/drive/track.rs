@@ -36,6 +36,8 @@ pub(crate) struct Track {
     pub tool: Option<u32>,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
+    /// How many moves the one that is made becomes, in equal shares of its time.
+    pub(super) pieces: usize,
     pub exact_stop: bool,
     /// The direction of the tool, where the program gives it rather than the angles of axes.
     pub direct: Option<[f64; 3]>,
@@ -89,6 +91,7 @@ impl Track {
             tool: None,
             feed: None,
             feed_mode: FeedMode::default(),
+            pieces: 1,
             exact_stop: false,
             direct: None,
             frame: WorkFrame::default(),
@@ -319,15 +322,20 @@ impl Track {
                     }
                 });
             }
-            let mut last = from.abc;
-            for part in 1..parts {
-                let between = from.towards(&to, part as f64 / parts as f64);
-                let turning = self.driver.turning(last, between.abc, self.coordinates)?;
-                self.push(between, Move::straight(turning), rapid)?;
-                last = between.abc;
-            }
-            let turning = self.driver.turning(last, abc, self.coordinates)?;
-            self.push(to, Move::straight(turning), rapid)?;
+            self.in_pieces(parts, |own| {
+                let mut last = from.abc;
+                for part in 1..=parts {
+                    let between = if part == parts {
+                        to
+                    } else {
+                        from.towards(&to, part as f64 / parts as f64)
+                    };
+                    let turning = own.driver.turning(last, between.abc, own.coordinates)?;
+                    own.push(between, Move::straight(turning), rapid)?;
+                    last = between.abc;
+                }
+                Ok(())
+            })?;
         } else {
             self.push(to, Move::default(), rapid)?;
         }
@@ -364,7 +372,12 @@ impl Track {
             made.call = self.place.call;
             made.joined = self.joined;
             made.tool = self.tool;
-            made.feed = self.feed.filter(|_| !rapid);
+            let shares = if self.feed_mode == FeedMode::InverseTime {
+                self.pieces
+            } else {
+                1
+            };
+            made.feed = self.feed.filter(|_| !rapid).map(|feed| feed * shares as f64);
             if !(rapid && self.of_poses) {
                 made.feed_mode = self.feed_mode;
             }

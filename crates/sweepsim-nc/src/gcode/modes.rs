@@ -45,6 +45,8 @@ pub(crate) struct Modes {
     pub exact_stop: bool,
     pub stops_here: bool,
     pub feed: Option<f64>,
+    /// The feed was given in inches.
+    pub feed_in_inches: bool,
     pub speed: Option<f64>,
     pub spindle: SpindleTurning,
     /// The way along a thread in one revolution, as given.

@@ -21,7 +21,7 @@ pub struct ProgramPose {
     pub joined: bool,
     /// The tool's number, if the program has selected one.
     pub tool: Option<u32>,
-    /// The feed of this move as the program gives it; `None` for rapids, and before the first feed.
+    /// The feed of this move in the units of the program; `None` for rapids, and before the first feed.
     pub feed: Option<f64>,
     /// What the feed counts.
     pub feed_mode: FeedMode,

@@ -129,7 +129,7 @@ pub struct Program {
     pub controller: Option<Controller>,
     /// The name or title that the program gives itself.
     pub title: Option<String>,
-    /// The units of the program's words at its first move. Poses are in millimetres whatever they are; feeds are as written.
+    /// The units of the program's words at its first move. Poses are in millimetres whatever they are; feeds are in these units.
     pub units: Units,
     /// The poses in order; consecutive ones differ where they are joined.
     pub poses: ProgramPoses,

@@ -21,8 +21,7 @@ pub struct ToolUsage {
     pub feed_length: f64,
     /// and of its rapids.
     pub rapid_length: f64,
-    /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known; with the accelerations of the axes, where the machine has
-    /// them: see [`Program::times`].
+    /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known: see [`Program::times`].
     pub seconds: f64,
     /// The duration of the rapids, in seconds: see [`Program::times`].
     pub rapid_seconds: f64,
@@ -55,7 +54,6 @@ impl Program {
         let mut events = self.events.iter().peekable();
         let mut rpm = None;
         let mut last: Option<ProgramPose> = None;
-        let accelerates = self.accelerates().is_some();
         let mut poses = self.poses.in_order().enumerate();
         self.each_time(|time| {
             let Some((index, pose)) = poses.next() else { return };
@@ -80,8 +78,7 @@ impl Program {
                 }
             }
             if let (true, Some(last)) = (pose.joined, &last) {
-                let least = time.seconds.filter(|_| accelerates).unwrap_or(0.0);
-                usage.add(last, &pose, (self.units.in_mm(), rpm), least);
+                usage.add(last, &pose, (self.units.in_mm(), rpm), time.seconds);
                 if pose.rapid {
                     usage.rapid_seconds += time.seconds.unwrap_or(0.0);
                 }
@@ -162,7 +159,7 @@ fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
 
 impl ToolUsage {
     /// Adds a move that takes at least so many seconds.
-    fn add(&mut self, from: &ProgramPose, to: &ProgramPose, (unit, rpm): (f64, Option<f64>), least: f64) {
+    fn add(&mut self, from: &ProgramPose, to: &ProgramPose, (unit, rpm): (f64, Option<f64>), seconds: Option<f64>) {
         let length = length(from, to);
         if to.rapid {
             self.rapid_moves += 1;
@@ -184,14 +181,8 @@ impl ToolUsage {
         if let Some(rpm) = rpm {
             widen(&mut self.speeds, rpm);
         }
-        let minutes = match (to.feed.filter(|feed| *feed > 0.0), to.feed_mode) {
-            (Some(feed), FeedMode::PerMinute) => Some(length / (feed * unit)),
-            (Some(feed), FeedMode::PerRevolution) => rpm.map(|rpm| length / (feed * unit * rpm)),
-            (Some(feed), FeedMode::InverseTime) => Some(1.0 / feed),
-            (None, _) => None,
-        };
-        match minutes.filter(|minutes| minutes.is_finite()) {
-            Some(minutes) => self.seconds += (60.0 * minutes).max(least),
+        match seconds {
+            Some(seconds) => self.seconds += seconds,
             None => self.untimed += 1,
         }
     }

@@ -7,8 +7,9 @@ use std::io::{BufRead, Write};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use sweepsim_motion::Pose;
 
+use crate::model::event::EventKind;
 use crate::model::names::Format;
-use crate::model::program::{Program, ProgramPose};
+use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::text::lines::Lines;
 use crate::text::numbers::shortest;
@@ -16,7 +17,7 @@ use crate::text::numbers::shortest;
 /// All columns; the first six are required.
 const COLUMNS: [&str; 10] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "tool", "break"];
 
-/// Reads a table. Lengths are multiplied by `unit`, in millimetres per unit of the table.
+/// Reads a table. Lengths and feeds are multiplied by `unit`, in millimetres per unit of the table.
 ///
 /// The axis `i, j, k` may have any length but 0. `rapid` is `0`, `1`, `true`, `false` or empty, and describes the move that ends in its
 /// row. Where `tool` changes, the path breaks, and where `break` is `1` or `true`: the tool does not move to that row from the one before.
@@ -246,7 +247,7 @@ impl Row<'_> {
         made.rapid = rapid;
         made.joined = !self.flag(9)? && last.is_some_and(|last| last.tool == tool);
         made.tool = tool;
-        made.feed = feed;
+        made.feed = feed.map(|feed| feed * unit);
         Ok(made)
     }
 }
@@ -256,11 +257,46 @@ impl Row<'_> {
 /// # Errors
 /// Those of the writer.
 pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<()> {
+    write_with(poses, |pose| pose.feed, writer)
+}
+
+/// Writes the moves of a program as a table in millimetres, and returns what it cannot say.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_program(program: &Program, writer: &mut impl Write) -> std::io::Result<Vec<String>> {
+    let unit = program.units.in_mm();
+    let is_per_minute = |pose: &ProgramPose| pose.feed_mode == FeedMode::PerMinute;
+    let feed = |pose: &ProgramPose| pose.feed.filter(|_| is_per_minute(pose)).map(|feed| feed * unit);
+    write_with(&program.poses, feed, writer)?;
+    let mut lost = Vec::new();
+    let has = |mode| {
+        let mut poses = program.poses.iter();
+        poses.any(|pose| pose.feed.is_some() && pose.feed_mode == mode)
+    };
+    if has(FeedMode::PerRevolution) {
+        lost.push("feeds per revolution".to_owned());
+    }
+    if has(FeedMode::InverseTime) {
+        lost.push("feeds in inverse time".to_owned());
+    }
+    let mut events = program.events.iter();
+    if events.any(|event| !matches!(event.kind, EventKind::ToolChange(_))) {
+        lost.push("spindle, coolant, dwells, stops and messages".to_owned());
+    }
+    Ok(lost)
+}
+
+fn write_with(
+    poses: &[ProgramPose],
+    feed: impl Fn(&ProgramPose) -> Option<f64>,
+    writer: &mut impl Write,
+) -> std::io::Result<()> {
     // A change of the tool breaks the path anyway.
     let breaks = |index: usize| index > 0 && !poses[index].joined && poses[index].tool == poses[index - 1].tool;
     let has = [
         poses.iter().any(|pose| pose.rapid),
-        poses.iter().any(|pose| pose.feed.is_some()),
+        poses.iter().any(|pose| feed(pose).is_some()),
         poses.iter().any(|pose| pose.tool.is_some()),
         (0..poses.len()).any(breaks),
     ];
@@ -284,7 +320,7 @@ pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<
         );
         let optional = [
             u8::from(pose.rapid).to_string(),
-            pose.feed.map_or_else(String::new, shortest),
+            feed(pose).map_or_else(String::new, shortest),
             pose.tool.map_or_else(String::new, |tool| tool.to_string()),
             u8::from(breaks(index)).to_string(),
         ];

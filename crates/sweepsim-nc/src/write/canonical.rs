@@ -48,7 +48,7 @@ pub fn canonical(program: &Program, writer: &mut impl Write) -> Result<()> {
         writeln!(
             writer,
             "{}  # {}",
-            of_pose(pose),
+            of_pose(pose, program.units.in_mm()),
             lines(pose.file, pose.line, pose.call)
         )?;
     }
@@ -67,18 +67,19 @@ fn place(program: &Program, file: usize, line: usize) -> String {
     }
 }
 
-fn of_pose(pose: &ProgramPose) -> String {
+/// Lengths are in millimetres, those of feeds too.
+fn of_pose(pose: &ProgramPose, unit: f64) -> String {
     let kind = match (pose.joined, pose.rapid, pose.feed) {
         (false, ..) => "start".to_owned(),
         (true, true, _) => "rapid".to_owned(),
         (true, false, None) => "feed".to_owned(),
         (true, false, Some(feed)) => {
-            let unit = match pose.feed_mode {
-                FeedMode::PerMinute => "",
-                FeedMode::PerRevolution => "/rev",
-                FeedMode::InverseTime => " inverse",
+            let (feed, per) = match pose.feed_mode {
+                FeedMode::PerMinute => (feed * unit, ""),
+                FeedMode::PerRevolution => (feed * unit, "/rev"),
+                FeedMode::InverseTime => (feed, " inverse"),
             };
-            format!("feed {}{unit}", shortest(feed))
+            format!("feed {}{per}", shortest(feed))
         }
     };
     let arc = match pose.way().course {

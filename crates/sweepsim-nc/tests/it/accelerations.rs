@@ -187,9 +187,8 @@ fn arcs_on_turned_tables() {
         &[rise * 2.0_f64.sqrt() / 10.0 + 10.0 / a],
     );
     // The table alone turns, by chords: 10 degrees/s after 0.2 s.
-    let feed = 60.0 * 10.0_f64.to_radians() * 10.0;
-    let text = format!("G21 G90\nG0 X10 Y0 Z0 C0\nG1 C90 F{feed}\n");
-    let chords = feeds(&gcode::read(&text, &options).unwrap());
+    let text = "G21 G90\nG0 X10 Y0 Z0 C0\nG1 C90 F600\n";
+    let chords = feeds(&gcode::read(text, &options).unwrap());
     let sum: f64 = chords.iter().sum();
     assert!(chords.len() > 10 && (sum - 9.2).abs() < 2e-3, "{sum}");
     // An arc while the table turns is from rest to rest, bounded by the slowest linear axis and by the table.
@@ -210,6 +209,18 @@ fn usage_counts_accelerations() {
     assert_eq!(program(&ReadOptions::default()).usage()[0].seconds, 1.0);
     assert_eq!(program(&options("Machine(name: \"plain\")")).usage()[0].seconds, 1.0);
     near(&[program(&mill([1000.0; 3], "")).usage()[0].seconds], &[1.1]);
+}
+
+/// It left out turns in place and the largest speeds of axes, where no axis accelerates.
+#[test]
+fn usage_takes_as_long_as_the_moves() {
+    let text = "G21\nT1 M6\nM428\nG0 X0 Y0 Z0 C0 A0\nG1 A30 F360\nG1 X100 F6000\n";
+    let usage = |options: &ReadOptions| gcode::read(text, options).unwrap().usage()[0].seconds;
+    near(&[usage(&ReadOptions::default())], &[5.0 + 1.0]);
+    let slow = options(
+        "Machine(name: \"slow\", table: [(letter: 'A', axis: (1, 0, 0))], linear: [(letter: 'X', speed: 600)])",
+    );
+    near(&[usage(&slow)], &[5.0 + 10.0]);
 }
 
 /// A path of straight moves: the ends, and the speed on each in mm/s.

@@ -240,3 +240,27 @@ fn an_arc_bulges_beyond_its_ends() {
         "line 2: X is 10, outside of its limits -100 to 9"
     );
 }
+
+/// A feed in inches is 25.4 times as fast, along a way; turns in place are in degrees.
+#[test]
+fn axes_are_as_slow_for_feeds_in_inches() {
+    let text = "Machine(name: \"mill\", table: [(letter: 'C', axis: (0, 0, 1), speed: 900)], linear: [(letter: 'X', speed: 1000)])";
+    let machine = Machine::read(text).unwrap();
+    let mut options = ReadOptions::default();
+    options.machine = machine.clone();
+    let slow = |text: &str| -> Vec<(char, f64)> {
+        let program = gcode::read(text, &options).unwrap();
+        let findings = check(&program, machine.kinematics.as_ref().unwrap());
+        let speeds = findings.iter().filter_map(|finding| match finding.fault {
+            AxisFault::Speed { letter, needed, .. } => Some((letter, needed)),
+            _ => None,
+        });
+        speeds.collect()
+    };
+    assert_eq!(slow("G21 G0 X0 Y0 Z0 C0\nG1 X25.4 F1270\n"), [('X', 1270.0)]);
+    let [('X', needed)] = slow("G20 G0 X0 Y0 Z0 C0\nG1 X1 F50\n")[..] else {
+        panic!("the axis would not be too slow")
+    };
+    assert!((needed - 1270.0).abs() < 1e-9, "{needed}");
+    assert!(slow("G20 G0 X0 Y0 Z0 C0\nG1 X1 F39\n").is_empty());
+}

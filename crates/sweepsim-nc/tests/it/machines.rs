@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use sweepsim_motion::{TipCourse, Turning};
-use sweepsim_nc::{AxisLaw, Machine, ReadOptions, gcode};
+use sweepsim_nc::{AxisFault, AxisLaw, Machine, ReadOptions, check, gcode};
 
 const PROGRAM: &str =
     "G21 G90 M428\nG0 X0 Y0 Z5 A0 C0\nG1 X10 A30 C350 F200\nG17 G3 X10 Y20 I0 J10 C700\nG2 X10 Y20 I1 J0\n";
@@ -123,4 +123,48 @@ fn an_unknown_machine_names_the_ready_ones() {
         error.contains("no such file") && error.contains("trunnion-ac"),
         "{error}"
     );
+}
+
+/// The feed of rotary axes that move alone counts degrees, in inches too, wherever that takes the tip.
+#[test]
+fn turns_of_the_table_take_as_long_as_their_degrees() {
+    let text = r#"Machine(name: "slow", table: [(letter: 'C', axis: (0, 0, 1), speed: 600)])"#;
+    let mut options = ReadOptions::default();
+    options.machine = Machine::read(text).unwrap();
+    for (units, x) in [("G21", 50.8), ("G20", 2.0)] {
+        let program = format!("{units} G90\nT1 M6\nG0 X{x} Y0 Z0 C0\nG1 C180 F360\nC0 F1200\n");
+        let program = gcode::read(&program, &options).unwrap();
+        let seconds = |line: usize| -> f64 {
+            let times = program.times();
+            let all = program.poses.iter().zip(&times).filter(|(pose, _)| pose.line == line);
+            all.filter_map(|(_, time)| time.seconds).sum()
+        };
+        assert!((seconds(4) - 30.0).abs() < 1e-9, "{units}: {}", seconds(4));
+        // Twice as fast as the axis can be.
+        assert!((seconds(5) - 18.0).abs() < 1e-9, "{units}: {}", seconds(5));
+        let slow = check(&program, options.machine.kinematics.as_ref().unwrap());
+        assert!(!slow.is_empty() && slow.iter().all(|own| own.line == 5), "{slow:?}");
+        assert!(
+            slow.iter().all(|own| matches!(own.fault, AxisFault::Speed { letter: 'C', needed, .. } if (needed - 1200.0).abs() < 1e-6)),
+            "{slow:?}"
+        );
+    }
+}
+
+/// A feed in inverse time is that of its block: each chord took as long as all of them should.
+#[test]
+fn chords_share_the_time_of_their_block() {
+    let mut options = ReadOptions::default();
+    options.machine = Machine::named("trunnion-ac").unwrap();
+    let text = "G21 G90\nT1 M6\nG0 X20 Y0 Z0 A0 C0\nG93 G1 X25 C90 F2\nX20 C0 A30 F3\nG18 G2 X30 I5 K0 F1\nG1 A0 F4\n";
+    for exact_arcs in [false, true] {
+        options.exact_arcs = exact_arcs;
+        let program = gcode::read(text, &options).unwrap();
+        let times = program.times();
+        for (line, expected) in [(4, 30.0), (5, 20.0), (6, 60.0), (7, 15.0)] {
+            let all = program.poses.iter().zip(&times).filter(|(pose, _)| pose.line == line);
+            let seconds: f64 = all.filter_map(|(_, time)| time.seconds).sum();
+            assert!((seconds - expected).abs() < 1e-9, "line {line}: {seconds}");
+        }
+    }
 }

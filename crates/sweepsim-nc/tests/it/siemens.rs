@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sweepsim_nc::{EventKind, Program, ReadOptions, siemens};
+use sweepsim_nc::{EventKind, Program, ReadOptions, Units, siemens};
 
 fn read(text: &str) -> Program {
     siemens::read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -354,4 +354,19 @@ fn repeats_and_vectors_that_mean_nothing_are_refused() {
             "{found}"
         );
     }
+}
+
+/// The units are those of the first move, and feeds are in them; they were millimetres whatever the program said.
+#[test]
+fn programs_in_inches_have_feeds_in_inches() {
+    let found = read("G700\nT1\nG0 X0 Y0 Z0\nG1 X1 F10\nG710 X50.8 F254\nG93 X60 F2\n");
+    assert_eq!(found.units, Units::Inch);
+    let feeds: Vec<f64> = found.poses.iter().filter_map(|pose| pose.feed).collect();
+    assert_eq!(feeds, [10.0, 254.0 * (1.0 / 25.4), 2.0]);
+    let seconds: Vec<f64> = found.times().iter().filter_map(|time| time.seconds).collect();
+    assert!(
+        (seconds[0] - 6.0).abs() < 1e-9 && (seconds[1] - 6.0).abs() < 1e-9,
+        "{seconds:?}"
+    );
+    assert_eq!(read("G71 G0 X0 Y0 Z0\nG1 X1 F10\n").units, Units::Mm);
 }

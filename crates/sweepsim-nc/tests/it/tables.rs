@@ -1,7 +1,7 @@
 //! Tables are read back as written, and nothing that a reader gets makes it panic.
 
 use sweepsim_motion::Pose;
-use sweepsim_nc::{Machine, ProgramPose, ReadOptions, gcode, read_file, table};
+use sweepsim_nc::{Machine, ProgramPose, ReadOptions, gcode, read_file, table, write};
 use sweepsim_props::*;
 
 fn length() -> impl Strategy<Value = f64> {
@@ -165,4 +165,40 @@ fn tables_in_text_and_from_readers_are_alike() {
     let bytes = [&b"x,y,z,i,j,k\n0,0,0,0,0,1\n0,\xc3\xa4,\xff,0,0,1\n"[..]].concat();
     let error = table::read_from(&bytes[..], 1.0).unwrap_err();
     assert_eq!(error.to_string(), "3:5: this is not a text file: expected UTF-8");
+}
+
+/// Feeds were left in inches beside lengths in millimetres, and those per revolution were taken for feeds per minute.
+#[test]
+fn feeds_of_programs_in_inches_are_in_millimetres() {
+    let text = "G20 G0 X0 Y0 Z0\nG1 X1 F10\nG95 X2 F0.01\nG93 X3 F2\nG94 G4 P1\nX4 F20\n";
+    let program = gcode::read(text, &ReadOptions::default()).unwrap();
+    let mut written = Vec::new();
+    let lost = table::write_program(&program, &mut written).unwrap();
+    assert_eq!(
+        lost,
+        [
+            "feeds per revolution",
+            "feeds in inverse time",
+            "spindle, coolant, dwells, stops and messages"
+        ]
+    );
+    let text = String::from_utf8(written).unwrap();
+    let feeds = |unit: f64| -> Vec<Option<f64>> {
+        let read = table::read(&text, unit).unwrap();
+        read.poses.iter().map(|pose| pose.feed).collect()
+    };
+    assert_eq!(feeds(1.0), [None, Some(254.0), None, None, Some(508.0)]);
+    // A table in inches.
+    assert_eq!(feeds(25.4)[1], Some(254.0 * 25.4));
+    let mut written = Vec::new();
+    write::canonical(&program, &mut written).unwrap();
+    let text = String::from_utf8(written).unwrap();
+    for line in [
+        "feed 254 (25.4 0 0)",
+        "feed 0.254/rev (50.8 0 0)",
+        "feed 2 inverse",
+        "feed 508 (101.6 0 0)",
+    ] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
 }

@@ -101,6 +101,41 @@ fn faults_are_named_by_their_lines() {
     assert_eq!(first.len(), 1);
 }
 
+/// Times and lengths were those of the whole program, and paths that were not followed removed nothing.
+#[test]
+fn what_comes_after_the_first_finding_counts_nowhere() {
+    let paths = |ends: [f64; 2]| {
+        ends.map(|y| {
+            format!(
+                "Path(tool: 1, feed: 600, moves: [Start(((-9, {y}, -1), (0, 0, 1))), Line(((69, {y}, -1), (0, 0, 1))), Line(((69, {y}, -2), (0, 0, 1))), Line(((-9, {y}, -2), (0, 0, 1)))])"
+            )
+        })
+        .join(", ")
+    };
+    let job = format!(
+        "Job(grid: Grid(cells: (60, 40)), stock: Block(min: (0, 0, -10), max: (60, 40, 0)), tools: {{ 1: Flat(radius: 4, length: 30) }}, paths: [{}], fixtures: [Block(min: (-2, 12, -10), max: (-1, 15, 5))])",
+        paths([10.0, 30.0])
+    );
+    let folder = workdir(&job);
+    let (report, _) = verified(&folder, 1, &["--first"]);
+    let work = report.work.unwrap();
+    assert!(
+        (work.length - 78.0).abs() < 1e-9 && (work.seconds - 7.8).abs() < 1e-9,
+        "{work:?}"
+    );
+    // On 8 lines, 1 mm deep.
+    assert!((work.removed - 480.0).abs() < 1e-3, "{work:?}");
+    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+    let one = job.replace(
+        "paths: [Path(",
+        "paths: [Path(tool: 1, poses: [((0, 0, 90), (0, 0, 1)), ((0, 0, 99), (0, 0, 1))]), Path(",
+    );
+    fs::write(folder.path("job.ron"), one).unwrap();
+    let words = folder.run_job("verify", &["--first", "--moves", "--only", "report"]);
+    let words = text(&words.stdout);
+    assert!(words.contains("1 feed move that removes nothing"), "{words}");
+}
+
 #[test]
 fn holders_and_clamps() {
     // A holder that reaches down to 4.5 mm above the tip meets the block's top in the second pass, 5 mm deep.

@@ -3,6 +3,7 @@
 
 mod kept;
 mod runs;
+pub(super) mod slivers;
 
 use super::{fixtures, targets};
 use crate::base::cache::{Digest, Key, RunCache};
@@ -108,7 +109,8 @@ impl<'a> JudgedProgram<'a> {
                     let differs = |(target, share): (&Target, AreaShare)| {
                         let compared = || {
                             let before = on_tile(tile)?;
-                            Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target, share))
+                            let remaining = slivers::without(&done.remaining, job.tolerance);
+                            Ok::<_, StockError>(TileDeviation::new(&before, &remaining, target, share))
                         };
                         match self.session.cache() {
                             Some(cache) => known_deviation(cache, base(), &done.remaining, compared),

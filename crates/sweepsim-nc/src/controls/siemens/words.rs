@@ -8,6 +8,7 @@ use super::language::structures::Item;
 use super::state::{Operation, PoleFrom};
 use crate::drive::CornerShape;
 use crate::model::event::{Coolant, EventKind, Spindle};
+use crate::model::program::{FeedMode, Units};
 use crate::text::error::{Located, NcProblem};
 
 /// How a value is meant.
@@ -228,10 +229,18 @@ impl Reader<'_> {
 
     /// F, S, T, D and M words. Whether the program ends.
     fn settings(&mut self, words: &Words, action: &mut Action) -> Result<bool, Located> {
+        if self.track.program.poses.is_empty() {
+            self.track.program.units = if self.modes.inch { Units::Inch } else { Units::Mm };
+        }
         if !action.dwell
             && let Some(feed) = words.plain("F")
         {
-            self.track.feed = Some(feed);
+            self.track.feed = Some(match self.track.feed_mode {
+                FeedMode::InverseTime => feed,
+                FeedMode::PerMinute | FeedMode::PerRevolution => {
+                    feed * (self.modes.unit() / self.track.program.units.in_mm())
+                }
+            });
         }
         if let Some(offset) = words.plain("D") {
             self.modes.without_length = offset == 0.0;

@@ -2,7 +2,8 @@
 
 use super::excursions::{Excursion, excursions};
 use crate::machines::{Kinematics, Position, ReachError};
-use crate::model::program::{FeedMode, Program, ProgramPose};
+use crate::model::program::{FeedMode, Program, ProgramPose, Units};
+use crate::model::times::counted;
 
 /// Something that a machine cannot do.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,7 +163,7 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
             });
         }
         if let Some((from, before)) = before
-            && let Some(minutes) = minutes(before, &pose, from, &position)
+            && let Some(minutes) = minutes([before, &pose], [*from, position], program.units)
         {
             for (letter, largest, moved) in machine.speeds(from, &position) {
                 let needed = moved / minutes;
@@ -181,18 +182,12 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
     findings
 }
 
-/// How long a feed move takes, if that is known. Feeds are of the tip along its way; of a turn in place, in degrees.
-fn minutes(before: &ProgramPose, pose: &ProgramPose, from: &Position, to: &Position) -> Option<f64> {
-    let feed = pose.feed.filter(|feed| !pose.rapid && *feed > 0.0)?;
-    match pose.feed_mode {
+/// How long a feed move takes, if that is known.
+fn minutes(ends: [&ProgramPose; 2], axes: [Position; 2], units: Units) -> Option<f64> {
+    let feed = ends[1].feed.filter(|feed| !ends[1].rapid && *feed > 0.0)?;
+    match ends[1].feed_mode {
         FeedMode::InverseTime => Some(1.0 / feed),
-        FeedMode::PerMinute => {
-            let square = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            let way = square(before.pose.tip(), pose.pose.tip()).sqrt();
-            let turn = square(from.abc, to.abc).sqrt();
-            let length = if way > 0.0 { way } else { turn };
-            (length > 0.0).then_some(length / feed)
-        }
+        FeedMode::PerMinute => Some(counted(ends, Some(axes), units) / feed).filter(|minutes| *minutes > 0.0),
         FeedMode::PerRevolution => None,
     }
 }

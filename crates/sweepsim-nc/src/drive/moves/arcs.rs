@@ -62,15 +62,30 @@ impl Track {
         let from = Position::new([0.0; 3], self.abc);
         let to = Position::new([0.0; 3], abc);
         let directions = self.direct.zip(direction).filter(|(from, to)| from != to);
-        for chord in 1..chords {
-            let s = chord as f64 / chords as f64;
-            if let Some((from, to)) = directions {
-                self.direct = Some(std::array::from_fn(|k| from[k] * (1.0 - s) + s * to[k]));
+        self.in_pieces(chords, |own| {
+            for chord in 1..chords {
+                let s = chord as f64 / chords as f64;
+                if let Some((from, to)) = directions {
+                    own.direct = Some(std::array::from_fn(|k| from[k] * (1.0 - s) + s * to[k]));
+                }
+                own.straight(arc.at(s), from.towards(&to, s).abc, false)?;
             }
-            self.straight(arc.at(s), from.towards(&to, s).abc, false)?;
-        }
-        self.direct = direction.or(self.direct);
-        self.straight(arc.end, abc, false)
+            own.direct = direction.or(own.direct);
+            own.straight(arc.end, abc, false)
+        })
+    }
+
+    /// Makes a move as several ones: a feed in inverse time is that of all of them.
+    pub(in crate::drive) fn in_pieces(
+        &mut self,
+        count: usize,
+        make: impl FnOnce(&mut Self) -> Result<(), NcProblem>,
+    ) -> Result<(), NcProblem> {
+        let outer = self.pieces;
+        self.pieces *= count;
+        let made = make(self);
+        self.pieces = outer;
+        made
     }
 
     /// Where the tip is when the program says that the tool is at these points.

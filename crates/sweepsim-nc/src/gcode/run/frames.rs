@@ -3,6 +3,7 @@
 use super::interpreter::Reader;
 use crate::drive::Canonical;
 use crate::machines::WorkFrame;
+use crate::model::program::{FeedMode, Units};
 use crate::text::error::NcProblem;
 
 /// Millimetres per inch.
@@ -12,6 +13,25 @@ impl Reader {
     /// Millimetres per unit of the program.
     pub(crate) fn unit(&self) -> f64 {
         if self.modes.inch { INCH } else { 1.0 }
+    }
+
+    /// The feed in effect, in the units of the program.
+    pub(crate) fn feed(&self) -> Option<f64> {
+        let units = if self.modes.feed_in_inches {
+            Units::Inch
+        } else {
+            Units::Mm
+        };
+        let scale = match self.modes.feed_mode {
+            FeedMode::InverseTime => 1.0,
+            FeedMode::PerMinute | FeedMode::PerRevolution => units.in_mm() / self.program_unit(),
+        };
+        self.modes.feed.map(|feed| scale * feed)
+    }
+
+    /// Millimetres per unit of the program's first move, which its feeds are in.
+    pub(crate) fn program_unit(&self) -> f64 {
+        self.seen.units.map_or(self.unit(), Units::in_mm)
     }
 
     /// From the program's coordinates to those of the active work offset, without length offsets.

@@ -14,7 +14,7 @@ impl Reader {
     pub(crate) fn misc(&mut self, block: &Block) -> Result<Step, Located> {
         let whole = |problem| (problem, block.all());
         if let Some(feed) = block.get('F') {
-            self.modes.feed = Some(feed);
+            (self.modes.feed, self.modes.feed_in_inches) = (Some(feed), self.modes.inch);
         }
         if let Some(speed) = block.get('S') {
             let changed = self.modes.speed.replace(speed) != Some(speed);

@@ -64,7 +64,7 @@ impl Reader {
             self.change_tool(self.tools.selected)
                 .map_err(|problem| (problem, block.all()))?;
         }
-        (self.track.feed, self.track.feed_mode) = (self.modes.feed, self.modes.feed_mode);
+        (self.track.feed, self.track.feed_mode) = (self.feed(), self.modes.feed_mode);
         self.track.exact_stop = self.modes.exact_stop || self.modes.stops_here;
         let whole = |problem| (problem, block.all());
         self.switch_control().map_err(whole)?;

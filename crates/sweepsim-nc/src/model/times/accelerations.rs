@@ -20,14 +20,6 @@ use crate::model::usage::length;
 /// How tightly feed moves take their corners, in mm, where the machine does not say it: Grbl's setting `$11`.
 pub const CORNER_DEVIATION: f64 = 0.01;
 
-impl Program {
-    /// The machine, if the positions of its axes are known and any of them has an acceleration.
-    pub(crate) fn accelerates(&self) -> Option<&Kinematics> {
-        let machine = self.machine.kinematics.as_deref()?;
-        (accelerates(machine) && self.knows_positions()).then_some(machine)
-    }
-}
-
 fn accelerates(machine: &Kinematics) -> bool {
     let mut linear = machine.linear().iter();
     linear.any(|axis| axis.acceleration.is_some()) || machine.rotary().any(|axis| axis.acceleration.is_some())

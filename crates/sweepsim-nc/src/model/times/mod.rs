@@ -15,13 +15,16 @@ use ramps::{Leg, Limits};
 
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{Event, EventKind, Spindle};
-use crate::model::program::{FeedMode, Program, ProgramPose};
+use crate::model::program::{FeedMode, Program, ProgramPose, Units};
 use crate::model::usage::length;
 
 /// The speed of rapids in mm/min where the machine does not say it.
 pub const RAPID_SPEED: f64 = 10_000.0;
 /// The speed of rotary axes in rapids, in degrees per minute, where the machine does not say it.
 pub const RAPID_TURN: f64 = 7_200.0;
+
+/// Linear axes that move by less stand still, in millimetres.
+const STANDSTILL: f64 = 1e-9;
 
 /// How long the move to a pose takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,18 +88,28 @@ impl Program {
         }
     }
 
-    /// How long a feed move takes by its feed. That of a turn in place counts degrees.
-    fn feed_seconds(&self, from: &ProgramPose, to: &ProgramPose, rpm: Option<f64>) -> Option<f64> {
-        let feed = to.feed.filter(|feed| *feed > 0.0)?;
-        let way = length(from, to);
-        let unit = self.units.in_mm();
-        let way = if way > 0.0 { way } else { turn(from, to) * unit };
-        let minutes = match to.feed_mode {
-            FeedMode::PerMinute => way / (feed * unit),
-            FeedMode::PerRevolution => way / (feed * unit * rpm?),
+    /// How long a feed move takes by its feed.
+    fn feed_seconds(&self, ends: [&ProgramPose; 2], axes: Option<[Position; 2]>, rpm: Option<f64>) -> Option<f64> {
+        let (feed, mode) = (ends[1].feed.filter(|feed| *feed > 0.0)?, ends[1].feed_mode);
+        let minutes = match mode {
+            FeedMode::PerMinute => counted(ends, axes, self.units) / feed,
+            FeedMode::PerRevolution => counted(ends, axes, self.units) / (feed * rpm?),
             FeedMode::InverseTime => 1.0 / feed,
         };
         Some(60.0 * minutes)
+    }
+}
+
+/// What a feed counts: the way of the tip in these units; where rotary axes alone move, their degrees.
+pub(crate) fn counted([from, to]: [&ProgramPose; 2], axes: Option<[Position; 2]>, units: Units) -> f64 {
+    let way = length(from, to);
+    let apart = |a: [f64; 3], b: [f64; 3]| Vector3::from([0, 1, 2].map(|k| b[k] - a[k])).norm();
+    let degrees = || axes.map_or_else(|| turn(from, to), |[a, b]| apart(a.abc, b.abc));
+    let rest = axes.is_some_and(|[a, b]| apart(a.xyz, b.xyz) < STANDSTILL) && !to.tip_control;
+    if way > 0.0 && !rest {
+        way / units.in_mm()
+    } else {
+        degrees()
     }
 }
 
@@ -135,13 +148,16 @@ impl MoveClock<'_> {
         };
         let before = self.before.replace((pose.clone(), to));
         if let (true, Some((from, start))) = (pose.joined, before) {
-            let axes = machine.and_then(|machine| Some(Axes::new(machine, &start?, &to?)));
+            let positions = start.zip(to).map(|(start, to)| [start, to]);
+            let axes = machine
+                .zip(positions)
+                .map(|(machine, [start, to])| Axes::new(machine, &start, &to));
             if pose.rapid {
                 let (seconds, assumed) = axes.map_or_else(|| (assumed_rapid(&from, pose), true), Axes::rapid);
                 (time.seconds, time.assumed) = (Some(seconds), assumed);
             } else {
                 let least = axes.map_or(0.0, |axes| axes.at_full_speed());
-                let seconds = self.program.feed_seconds(&from, pose, self.rpm);
+                let seconds = self.program.feed_seconds([&from, pose], positions, self.rpm);
                 time.seconds = seconds.map(|seconds| seconds.max(least));
             }
         }

@@ -56,6 +56,26 @@ fn feeds_keep_their_mode() {
     );
 }
 
+/// Feeds are in the unit in effect where they are given, whatever the unit of the first move is.
+#[test]
+fn feeds_after_a_change_of_units() {
+    let text =
+        "G21 G0 X0 Y0 Z0\nG1 X1 F50.8\nG20 G1 X1 F2\nG93 X2 F3\nG95 S100 M3 X3 F0.1\nG21 G94 X4 F6\nG33.1 Z-1 K2";
+    let feeds = |text: &str| -> Vec<f64> { program(text).poses.iter().filter_map(|pose| pose.feed).collect() };
+    assert_eq!(feeds(text), [50.8, 2.0 * 25.4, 3.0, 0.1 * 25.4, 6.0, 2.0, 2.0]);
+    let seconds: Vec<f64> = program("G20 G0 X0 Y0 Z0\nG1 X1 F10\nG21 X50.8 F25.4\nG20 X3\n")
+        .times()
+        .iter()
+        .skip(1)
+        .filter_map(|time| time.seconds)
+        .collect();
+    let expected = [6.0, 60.0, 60.0];
+    assert!(
+        seconds.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{seconds:?}"
+    );
+}
+
 #[test]
 fn optional_blocks() {
     let text = "G0 X0 Y0 Z0\n/G1 X5\nG1 Y1";

@@ -159,7 +159,7 @@ impl Reader {
         }
         let mut stroke = self.stroke_to(end, abc, !cuts);
         if matches!(motion, MotionMode::Thread | MotionMode::RigidTap) {
-            stroke.feed = Some(self.pitch(motion, block)?);
+            stroke.feed = Some(self.pitch(motion, block)? * (self.unit() / self.program_unit()));
             stroke.feed_mode = FeedMode::PerRevolution;
         }
         match (motion, self.track.known()) {
