@@ -24,17 +24,17 @@ use std::ops::Range;
 /// The trees of some patches of the surface: the first, how many, and the bytes.
 pub type PatchTrees = (usize, usize, Vec<u8>);
 
-/// So many patches have their trees together.
+/// The patches of so many triangles and corners have their trees together.
 const TOGETHER: usize = 4096;
 
 /// A step of a tree whose parts are searched for themselves.
 #[derive(Clone, Copy)]
-pub(super) enum Step {
+enum Step {
     /// A patch of the surface begins.
     Begin,
     Byte(u8),
     Halved(Halved),
-    /// The tree of a part follows.
+    /// The tree of a part follows: its number among those that lie together.
     Part(usize),
 }
 
@@ -88,6 +88,8 @@ fn bytes_of(halved: Halved) -> SmallVec<[u8; 5]> {
 /// The patches of a surface in parts, some of which lie together.
 pub(super) struct Parts {
     some: Vec<Vec<Patch>>,
+    /// How they make up the surface, if that is to be recorded.
+    steps: Vec<Vec<Step>>,
     /// How many there are before each of these, and in all.
     before: Vec<usize>,
 }
@@ -103,29 +105,22 @@ impl Parts {
     }
 }
 
-/// The patches of a surface in parts, those longer than some length halved; and, if that is to be recorded, how they
-/// make up the surface.
-pub(super) fn parts(surface: &Surface, longest: f64, recorded: bool) -> (Parts, Vec<Step>) {
+/// The patches of a surface in parts, those longer than some length halved.
+pub(super) fn parts(surface: &Surface, longest: f64, recorded: bool) -> Parts {
     let sites: Vec<Range<usize>> = (0..surface.sites())
         .step_by(TOGETHER)
         .map(|first| first..surface.sites().min(first + TOGETHER))
         .collect();
-    let made: Vec<_> = sites
+    let made = sites
         .into_par_iter()
-        .map(|sites| parts_of(surface, sites, longest, recorded))
-        .collect();
-    let (mut some, mut before, mut steps) = (Vec::with_capacity(made.len()), vec![0], Vec::new());
-    let mut count = 0;
-    for (own, of_own) in made {
-        steps.extend(of_own.into_iter().map(|step| match step {
-            Step::Part(part) => Step::Part(count + part),
-            other => other,
-        }));
-        count += own.len();
-        before.push(count);
-        some.push(own);
-    }
-    (Parts { some, before }, steps)
+        .map(|sites| parts_of(surface, sites, longest, recorded));
+    let (some, steps): (Vec<Vec<Patch>>, Vec<Vec<Step>>) = made.unzip();
+    let mut before = vec![0];
+    before.extend(some.iter().scan(0, |count, own| {
+        *count += own.len();
+        Some(*count)
+    }));
+    Parts { some, steps, before }
 }
 
 fn parts_of(surface: &Surface, sites: Range<usize>, longest: f64, recorded: bool) -> (Vec<Patch>, Vec<Step>) {
@@ -157,29 +152,28 @@ fn parts_of(surface: &Surface, sites: Range<usize>, longest: f64, recorded: bool
         }
     };
     sites.for_each(|site| surface.patches(site, &mut add));
+    // There may be many of both, for as long as the search takes.
+    parts.shrink_to_fit();
+    steps.shrink_to_fit();
     (parts, steps)
 }
 
 /// The trees of all patches.
-pub(super) fn trees(steps: &[Step], records: &[Record]) -> Vec<PatchTrees> {
-    let mut all: Vec<PatchTrees> = Vec::new();
-    let mut patches = 0;
-    for step in steps {
-        if matches!(step, Step::Begin) {
-            if patches % TOGETHER == 0 {
-                all.push((patches, 0, Vec::new()));
+pub(super) fn trees(parts: &Parts, records: &[Record]) -> Vec<PatchTrees> {
+    let mut all = Vec::with_capacity(parts.steps.len());
+    let mut first = 0;
+    for (steps, before) in parts.steps.iter().zip(&parts.before) {
+        let (mut count, mut bytes) = (0, Vec::new());
+        for step in steps {
+            match step {
+                Step::Begin => count += 1,
+                Step::Byte(byte) => bytes.push(*byte),
+                Step::Halved(halved) => bytes.extend(bytes_of(*halved)),
+                Step::Part(part) => bytes.extend_from_slice(&records[before + part].0),
             }
-            patches += 1;
         }
-        let Some((_, count, bytes)) = all.last_mut() else {
-            continue;
-        };
-        match step {
-            Step::Begin => *count += 1,
-            Step::Byte(byte) => bytes.push(*byte),
-            Step::Halved(halved) => bytes.extend(bytes_of(*halved)),
-            Step::Part(part) => bytes.extend_from_slice(&records[*part].0),
-        }
+        all.push((first, count, bytes));
+        first += count;
     }
     all
 }

@@ -5,7 +5,7 @@ mod look;
 use super::found::Found;
 use super::known::{Blocks, nothing};
 use super::order::along_a_curve;
-use super::record::{Parts, PatchTrees, Record, Step, key, parts, trees};
+use super::record::{Parts, PatchTrees, Record, key, parts, trees};
 use super::removed::{Course, Removed};
 use super::stock::{Before, regions};
 use super::surface::Surface;
@@ -124,12 +124,12 @@ pub fn highest_from(
         parts(&surface, (surface.squares / PARTS).sqrt(), recorded)
     };
     let ordered = || {
-        let (patches, steps) = patches();
+        let patches = patches();
         let middle = |number| patches.get(number).middle().0;
         let order = along_a_curve(patches.len(), middle, target.size);
-        (patches, steps, order)
+        (patches, order)
     };
-    let (motions, (patches, steps, order)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, ordered);
+    let (motions, (patches, order)): (Vec<Vec<Stretch>>, _) = rayon::join(motions, ordered);
     let courses = || cutters.iter().zip(&motions);
     let size = courses().fold(target.size, |size, (cutter, all)| {
         let far = all.iter().map(|stretch| stretch.low.amax().max(stretch.high.amax()));
@@ -149,7 +149,6 @@ pub fn highest_from(
         removed,
         patches,
         order,
-        steps,
         numbers: if recorded {
             numbers.collect()
         } else {
@@ -203,8 +202,6 @@ struct Scene<'a> {
     /// Their numbers, in the order in which they are looked at: what is looked at together lies together, and asks for
     /// few of the motions.
     order: Vec<usize>,
-    /// How the patches make up the surface.
-    steps: Vec<Step>,
     /// The numbers of triangles by their corners, for records.
     numbers: FxHashMap<[u64; 9], u32>,
     recorded: bool,
@@ -232,7 +229,7 @@ impl Scene<'_> {
             let (found, records) = self.at_distance(distance, (known, limits.width), own, (blocks, monitor))?;
             let is_done = !found.is_left && found.open_count == 0;
             if is_done && self.recorded && distance <= self.farthest {
-                left.trees = trees(&self.steps, &records);
+                left.trees = trees(&self.patches, &records);
             }
             left.patches += found.patches;
             if let Some((place, height)) = found.highest.filter(|(_, height)| *height > known) {

@@ -1,8 +1,8 @@
 //! Cubes of space, with what of a solid's surface is near them.
 //!
 //! A cell is a cube `H`; its surroundings `H′` are a larger cube around the same centre, which holds whatever is lifted
-//! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Cells are divided when somebody
-//! asks, and keep their children.
+//! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Its parts are made when they are
+//! asked for.
 
 use super::outside::is_outside;
 use super::polygon::{Piece, area, clip};
@@ -54,6 +54,8 @@ pub(crate) struct Cell {
 
 /// Cells with more pieces than this are divided before they are looked at.
 pub(crate) const MOST_PIECES: usize = 256;
+/// So many pieces take as much memory as a cell without any: some 600 bytes.
+const PIECES_OF_A_CELL: usize = 4;
 /// As many directions are tried.
 pub(crate) const MOST_WAYS: usize = 8;
 /// A hollow is deeper than this part of what may have to be lifted.
@@ -168,26 +170,25 @@ impl Cell {
         let children = self.children.get_or_init(Box::default);
         let child = &children[octant];
         if child.get().is_none() {
-            let take = |left: usize| left.checked_sub(1 + self.pieces().len() / 8);
+            // It may have as many pieces as its parent has triangles.
+            let cells = 1 + self.count().min(MOST_PIECES) / PIECES_OF_A_CELL;
+            let take = |left: usize| left.checked_sub(cells);
             left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
         }
         let own = (self.centre_of_child(octant), 0.5 * self.half);
         Some(child.get_or_init(|| Self::new(own, self.wanted, &self.near, triangles, distance)))
     }
 
-    /// Forgets all parts of cells with few triangles: how much is left.
+    /// Forgets all parts with few triangles: how many cells are left.
     pub fn prune(&mut self) -> usize {
-        if !matches!(self.near, Near::Many(_)) {
-            let near = std::mem::replace(&mut self.near, Near::Outside);
-            *self = Self::with((self.centre, self.half), self.wanted, near);
+        let mut left = 1;
+        for child in self.children.get_mut().into_iter().flat_map(|all| all.iter_mut()) {
+            match child.get_mut() {
+                Some(part) if matches!(part.near, Near::Many(_)) => left += part.prune(),
+                _ => drop(child.take()),
+            }
         }
-        let own = 1 + self.pieces().len() / 8;
-        let children = self
-            .children
-            .get_mut()
-            .into_iter()
-            .flat_map(|children| children.iter_mut());
-        own + children.filter_map(OnceLock::get_mut).map(Self::prune).sum::<usize>()
+        left
     }
 
     /// Directions to try: the mean normal, and those of the triangles.

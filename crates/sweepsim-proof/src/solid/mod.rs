@@ -34,10 +34,13 @@ pub struct Target {
     pub(crate) is_whole: bool,
 }
 
-/// At most as many cells, of some hundred bytes each; of one with pieces, every eight count as another.
+/// At most as many cells, of some 600 bytes each; pieces count as further ones.
 const MOST_CELLS: usize = 2_000_000;
 /// No more of them are kept for the next parts of a work.
-const KEPT: usize = 100_000;
+const KEPT: usize = 200_000;
+/// So many parts of a work are done together, or some for each thread; in between, cells may be forgotten.
+const TOGETHER: usize = 16;
+const OF_A_THREAD: usize = 4;
 
 impl Target {
     /// `lift`: how far something may have to be lifted out of it, about: a few times a limit of depths. It does not
@@ -100,9 +103,8 @@ impl Target {
         self.lift
     }
 
-    /// Does a work in groups of parts, with the cells in between, and forgets these when they are many. What remains
-    /// known does not depend on threads. `None` if one of the parts is none. What is `known` of a group is not looked
-    /// for, and `keep` gets what is found of others.
+    /// Does a work in groups of parts, and forgets cells in between when they are many. `None` if one of the parts is
+    /// none. What is `known` of a group is not looked for, and `keep` gets what is found of others.
     pub(crate) fn each<'a, T: Sync + 'a, U: Send>(
         &self,
         groups: impl Iterator<Item = &'a [T]>,
@@ -115,22 +117,26 @@ impl Target {
                 all.extend(own);
                 continue;
             }
-            let own: Option<Vec<U>> = {
-                let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
-                some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
-            };
-            let own = own?;
-            // Whether there were enough cells must not depend on what was known before.
-            if MOST_CELLS - self.cells_left.load(Ordering::Relaxed) < MOST_CELLS - 2 * KEPT {
-                keep(some, &own);
+            let (first, mut enough) = (all.len(), true);
+            for some in some.chunks(TOGETHER.max(OF_A_THREAD * rayon::current_num_threads())) {
+                let own: Option<Vec<U>> = {
+                    let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
+                    some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
+                };
+                all.extend(own?);
+                let cells = MOST_CELLS - self.cells_left.load(Ordering::Relaxed);
+                // Whether there were enough cells must not depend on what was known before.
+                enough &= cells < MOST_CELLS - 2 * KEPT;
+                if cells > KEPT {
+                    let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
+                    let left = MOST_CELLS.saturating_sub(root.prune());
+                    self.cells_left.store(left, Ordering::Relaxed);
+                }
+            }
+            if enough {
+                keep(some, &all[first..]);
             } else {
                 self.crowded.store(true, Ordering::Relaxed);
-            }
-            all.extend(own);
-            if MOST_CELLS - self.cells_left.load(Ordering::Relaxed) > KEPT {
-                let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
-                self.cells_left
-                    .store(MOST_CELLS.saturating_sub(root.prune()), Ordering::Relaxed);
             }
         }
         Some(all)
@@ -160,4 +166,41 @@ fn root(low: &Vector3<f64>, high: &Vector3<f64>) -> (Vector3<f64>, f64) {
     let centre = (0.5 * (low + high)).map(|c| (c / unit).round() * unit);
     // The centre is off by half a unit at most.
     (centre, ((half / unit).ceil() + 1.0) * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball of many triangles: cells pay for all pieces that they hold, and those that are forgotten hold none.
+    #[test]
+    fn what_is_remembered_of_many_triangles_is_counted() {
+        let at = |u: usize, v: usize| {
+            let [a, b] = [u as f64 / 64.0, 2.0 * (v % 128) as f64 / 128.0].map(|part| part * std::f64::consts::PI);
+            [a.sin() * b.cos(), a.sin() * b.sin(), a.cos()].map(|c| if [0, 64].contains(&u) { c.round() } else { c })
+        };
+        let square = |(u, v): (usize, usize)| {
+            let [a, b, c, d] = [at(u, v), at(u + 1, v), at(u + 1, v + 1), at(u, v + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        let all = (0..64).flat_map(|u| (0..128).map(move |v| (u, v))).flat_map(square);
+        let triangles = all.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        let target = Target::new(&TriangleSoup { triangles }, 0.01).expect("closed");
+        fn pieces(cell: &Cell, target: &Target) -> usize {
+            let child = |n| cell.child(n, &target.triangles, &target.distance, &target.cells_left);
+            match cell.near {
+                Near::Many(_) => (0..8).filter_map(child).map(|part| pieces(part, target)).sum(),
+                _ => cell.pieces().len(),
+            }
+        }
+        let held = pieces(&target.root.read().unwrap(), &target);
+        let paid = MOST_CELLS - target.cells_left.load(Ordering::Relaxed);
+        assert!(held > 16_000 && paid >= held / 4, "{paid} cells for {held} pieces");
+        let mut root = target.root.write().unwrap();
+        let left = root.prune();
+        assert!(0 < left && left < paid / 10, "{left} of {paid} cells are left");
+        target.cells_left.store(MOST_CELLS - left, Ordering::Relaxed);
+        drop(root);
+        assert_eq!(pieces(&target.root.read().unwrap(), &target), held);
+    }
 }
