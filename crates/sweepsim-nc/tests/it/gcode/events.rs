@@ -138,3 +138,12 @@ fn the_text_of_messages_is_bounded() {
         ["line 3: a message beyond 64 MiB of them, or among too many events: left out (20190 times, first here)"]
     );
 }
+
+/// Dwells after the last move belong to no move, but to its tool.
+#[test]
+fn dwells_after_the_last_move_count() {
+    let found = program("G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X100 F600\nG4 P2\nX0\nG4 P3\nM9\nG4 P4\nM30\n");
+    assert_eq!(found.rest_at_end(), 7.0);
+    assert_eq!(found.times().iter().map(|time| time.rest).sum::<f64>(), 2.0);
+    assert_eq!(found.usage()[0].seconds, 10.0 + 2.0 + 10.0 + 7.0);
+}
