@@ -135,3 +135,14 @@ fn what_is_missing_beside_the_part_is_found() {
     let warning = "warning  the target reaches 2.5 mm beyond the grid: volumes and regions leave out what is there";
     assert!(words.contains(warning), "{words}");
 }
+
+/// An area alone has square cells, 300 along its longer side.
+#[test]
+fn an_area_needs_no_number_of_cells() {
+    let block = "Block(min: (-10, -10, 0), max: (10, 10, 5))".to_owned();
+    let workdir = simulated(&[("block", block)]);
+    let more = ["--area", "-10,-5,10,5", "--out", "cmp", "--size", "60x40", "--json"];
+    let json = workdir.good(&[&["compare", "block/part.ply", "block/part.ply"][..], &more].concat());
+    let report: ComparisonReport = serde_json::from_str(&json).unwrap();
+    assert_eq!(report.cells, [300, 150]);
+}
