@@ -176,6 +176,11 @@ impl FormatError {
         }))
     }
 
+    /// What is wrong, without its place.
+    pub(crate) fn into_problem(self) -> Problem {
+        self.0.problem
+    }
+
     /// Names the file, unless one is already named.
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
         self.0.file.get_or_insert_with(|| file.to_owned());

@@ -58,7 +58,7 @@ pub use dexels::{
     read_dexels_csv, read_dexels_file, read_dexels_npz, read_tri_dexels, read_tri_dexels_file, write_dexels,
     write_dexels_binary, write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_tri_dexels,
 };
-pub use drafts::{Draft, DraftOptions, DraftStock, Guess, draft, draft_of};
+pub use drafts::{Draft, DraftFault, DraftOptions, DraftStock, Guess, draft, draft_of};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
 pub use jobs::{
     AsWear, Flags, Job, JobPath, LimitRegion, Limits, OnMachine, Origin, Origins, Provided, RegionPlace, Seconds,

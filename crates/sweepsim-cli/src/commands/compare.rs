@@ -4,7 +4,7 @@ use super::faces::{by_face, length};
 use crate::arguments::CompareOptions;
 use crate::session::{Failure, Lines, Outputs, Progress, print};
 use sweepsim_formats::{ComparisonReport, DeviationSummary, ReportedAlignment, ReportedRegion};
-use sweepsim_job::{output_folder, words};
+use sweepsim_job::{DeviationLimits, output_folder, words};
 
 /// The most regions that are named one by one.
 const NAMED: usize = 10;
@@ -23,12 +23,12 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     } else if options.quiet {
         Ok(())
     } else {
-        summary(&found.report, &outputs).print()
+        summary(&found.report, options.limits.as_ref(), &outputs).print()
     }
 }
 
 /// The summary for the user.
-fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
+fn summary(report: &ComparisonReport, limits: Option<&DeviationLimits>, outputs: &Outputs) -> Lines {
     let mut lines = Lines::default();
     let mut line = |label: &str, value: &str| lines.line(label, value);
     let volume = |value: f64| format!("{} mm³", words::measure(value));
@@ -49,9 +49,16 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
     }
     let [gouge, excess] = report.limits.map(length);
     let count = words::counted(report.regions.len() as u64, "region");
+    let beyond = format!("deeper than {gouge} or higher than {excess} mm");
     line(
         "limits",
-        &format!("{count} deeper than {gouge} or higher than {excess} mm"),
+        &match limits {
+            Some(DeviationLimits::Job(job)) => format!(
+                "{count} beyond the limits of {}: {beyond} where no region of it says otherwise",
+                job.display()
+            ),
+            _ => format!("{count} {beyond}"),
+        },
     );
     for region in report.regions.iter().take(NAMED) {
         line(&region.kind, &region_in_words(region));

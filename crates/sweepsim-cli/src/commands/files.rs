@@ -3,8 +3,8 @@
 use crate::arguments::{ConvertOptions, InspectOptions, NewOptions};
 use crate::session::{Failure, Lines, Outputs};
 use std::path::Path;
-use sweepsim_formats::{Job, draft};
-use sweepsim_job::{Sink as _, describe};
+use sweepsim_formats::{Provided, draft};
+use sweepsim_job::{JobError, Sink as _, describe};
 
 /// Prints a description of a file.
 pub(crate) fn inspect(options: &InspectOptions) -> Result<(), Failure> {
@@ -38,7 +38,7 @@ pub(crate) fn new(options: &NewOptions) -> Result<(), Failure> {
         return Err(Failure::message(message));
     }
     // Nobody should get a job that cannot be read.
-    let job = Job::parse(&draft.text, &file)?;
+    let job = draft.job(&file, &Provided::default()).map_err(JobError::from)?;
     if !folder.as_os_str().is_empty() {
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::message(format!("cannot make the folder {}: {error}", folder.display())))?;

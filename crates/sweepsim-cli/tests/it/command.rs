@@ -372,3 +372,20 @@ fn a_grid_that_does_not_fit_into_memory_is_refused() {
         "{error}"
     );
 }
+
+#[test]
+fn only_verify_writes_certificates() {
+    let workdir = Workdir::new(JOB);
+    for more in [
+        &["simulate", "job.ron"][..],
+        &["sweep", "job.ron"],
+        &["simulate", "job.ron", "--shard", "0/2"],
+    ] {
+        let message = workdir.bad(&[more, &["--only", "dexels,certificate", "--out", "out"]].concat());
+        assert!(
+            message.contains("--only certificate: expected dexels, mesh, picture") && message.contains("`verify`"),
+            "{message}"
+        );
+        assert!(workdir.written().is_empty());
+    }
+}

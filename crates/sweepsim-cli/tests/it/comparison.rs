@@ -135,3 +135,32 @@ fn what_is_missing_beside_the_part_is_found() {
     let warning = "warning  the target reaches 2.5 mm beyond the grid: volumes and regions leave out what is there";
     assert!(words.contains(warning), "{words}");
 }
+
+/// An area alone has square cells, 300 along its longer side.
+#[test]
+fn an_area_needs_no_number_of_cells() {
+    let block = "Block(min: (-10, -10, 0), max: (10, 10, 5))".to_owned();
+    let workdir = simulated(&[("block", block)]);
+    let more = ["--area", "-10,-5,10,5", "--out", "cmp", "--size", "60x40", "--json"];
+    let json = workdir.good(&[&["compare", "block/part.ply", "block/part.ply"][..], &more].concat());
+    let report: ComparisonReport = serde_json::from_str(&json).unwrap();
+    assert_eq!(report.cells, [300, 150]);
+}
+
+/// Regions of a job may allow more than the rest of it.
+#[test]
+fn limits_of_a_job_are_said_to_be_those() {
+    let block = |name: &str, height: u8| {
+        let stock = format!("Block(min: (-10, -10, 0), max: (10, 10, {height}))");
+        (name.to_owned(), stock)
+    };
+    let [low, high] = [block("low", 5), block("high", 6)];
+    let workdir = simulated(&[(&low.0, low.1), (&high.0, high.1)]);
+    let limits = "limits: Limits(gouge: 0.1, excess: 0.1, regions: [Region(within: Block(min: (-20, -20, -9), max: (20, 20, 9)), gouge: 2, excess: 2)])";
+    let job = format!("Job(stock: Block(min: (0, 0, 0), max: (1, 1, 1)), tools: {{}}, paths: [], {limits})");
+    fs::write(workdir.path("limits.ron"), job).unwrap();
+    let more = ["--limits", "limits.ron", "--out", "cmp", "--size", "60x40"];
+    let words = workdir.good(&[&["compare", "high/part.ply", "low/part.ply"][..], &more].concat());
+    let expected = "0 regions beyond the limits of limits.ron: deeper than 0.10000 or higher than 0.10000 mm where no region of it says otherwise";
+    assert!(words.contains(expected), "{words}");
+}

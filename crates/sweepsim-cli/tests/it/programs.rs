@@ -371,3 +371,25 @@ fn what_was_ignored_in_a_library_is_said_where_its_tool_is_used() {
         assert!(said.contains(note), "{said}");
     }
 }
+
+/// The job made of a program is not seen: its lines are not those of the program.
+#[test]
+fn faults_of_options_name_the_option() {
+    let folder = folder();
+    for (option, value, expected) in [
+        ("--cells", "0x0", "error: --cells: a number of cells is 0"),
+        ("--stock", "block:0,0,0,1e300,9,9", "error: --stock: max is 1"),
+        (
+            "--target",
+            "no.stl",
+            "error: --target: cannot read the target file no.stl: there is no such file",
+        ),
+    ] {
+        for command in ["simulate", "new"] {
+            let message = folder.bad(&[command, "plate.cls", option, value]);
+            assert!(message.contains(expected) && !message.contains("plate"), "{message}");
+        }
+    }
+    // Not a thousandth of a millimetre of what is given is lost.
+    folder.good(&["new", "plate.cls", "--stock", "block:0,0,-1,1e-5,2e-5,0"]);
+}

@@ -12,8 +12,10 @@ use sweepsim_motion::TipCourse;
 use sweepsim_nc::tools::{ToolLibrary, read_library};
 use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units, is_within};
 
+use thiserror::Error;
+
 use crate::error::{FormatError, Problem};
-use crate::jobs::Provided;
+use crate::jobs::{Job, Provided};
 
 /// The stock of a draft.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,6 +79,43 @@ pub struct Draft {
     pub found: Vec<String>,
     /// What nobody says.
     pub guessed: Vec<Guess>,
+}
+
+impl Draft {
+    /// Reads the job, which has, or would have, this file.
+    ///
+    /// # Errors
+    /// [`DraftFault`]: what is wrong with the text of the job has no place in it, which users may never see.
+    pub fn job(&self, file: &FilePath, provided: &Provided) -> Result<Job, DraftFault> {
+        Job::of_text(&self.text, file, provided).map_err(|error| {
+            if error.file().is_some() {
+                return DraftFault::File(error);
+            }
+            let line = error.position().and_then(|at| self.text.lines().nth(at.line - 1));
+            let problem = error.into_problem();
+            match line.and_then(words::option_of) {
+                Some(option) => DraftFault::Option { option, problem },
+                None => DraftFault::File(FormatError::new(problem, None).in_file(&self.program)),
+            }
+        })
+    }
+}
+
+/// Why a draft is no job.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DraftFault {
+    /// What the user says of the program cannot be.
+    #[error("{option}: {problem}")]
+    Option {
+        /// What is wrong: `stock`, `cells` or `target`.
+        option: &'static str,
+        /// Why.
+        problem: Problem,
+    },
+    /// The program, or a file that it refers to.
+    #[error(transparent)]
+    File(FormatError),
 }
 
 /// What nobody says, and a draft decides.

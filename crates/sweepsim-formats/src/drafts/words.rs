@@ -29,6 +29,19 @@ fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
+/// What the user says that a line of a draft is made of.
+pub(super) fn option_of(line: &str) -> Option<&'static str> {
+    let begins = [
+        ("grid: Grid(cells", "cells"),
+        // It covers the stock.
+        ("grid", "stock"),
+        ("stock", "stock"),
+        ("target", "target"),
+    ];
+    let found = begins.iter().find(|(begin, _)| line.trim_start().starts_with(begin));
+    found.map(|(_, option)| *option)
+}
+
 fn indented(text: &str) -> String {
     text.lines().map(|line| format!("    {line}\n")).collect()
 }
@@ -73,10 +86,14 @@ impl Drafter<'_> {
             (DraftStock::Mesh(file), _) => {
                 let _ = writeln!(text, "    stock: Mesh({}),", quoted(&self.named(file)?));
             }
-            (_, Some([low, high])) => {
+            (DraftStock::Block { min, max }, _) => {
+                let [low, high] = [min, max].map(|corner| corner.map(shortest).join(", "));
+                let _ = writeln!(text, "    stock: Block(min: ({low}), max: ({high})),");
+            }
+            (DraftStock::Auto, Some([low, high])) => {
                 let _ = writeln!(text, "    stock: Block(min: {}, max: {}),", corner(low), corner(high));
             }
-            (_, None) => {}
+            (DraftStock::Auto, None) => {}
         }
         text.push_str(&indented(&to_ron(tools).0));
         let _ = writeln!(text, "    paths: [\n        Path({}),\n    ],", self.path()?.join(", "));

@@ -127,6 +127,11 @@ impl Job {
         read::parse(text, file, provided).map_err(|error| error.in_file(file))
     }
 
+    /// Reads a job as [`Job::parse_with`] does: errors in its own text name no file.
+    pub(crate) fn of_text(text: &str, file: &FilePath, provided: &Provided) -> Result<Self, FormatError> {
+        read::parse(text, file, provided)
+    }
+
     /// What people call a set-up: its name, or its number from 1. `None` if the job has no set-ups.
     #[must_use]
     pub fn setup_name(&self, number: usize) -> Option<String> {

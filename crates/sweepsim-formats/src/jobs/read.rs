@@ -94,9 +94,13 @@ impl JobReader<'_> {
         let size = (value * self.unit).abs();
         if good && size <= LARGEST {
             Ok(())
-        } else if good && size > LARGEST && value.is_finite() {
+        } else if good && size > LARGEST {
             let expected = format!("{expected}, and at most {LARGEST:e}");
-            Err(self.error(Problem::value(what, value, expected), steps))
+            let problem = match value.is_finite() {
+                true => Problem::value(what, value, expected),
+                false => Problem::value(what, "too large", expected),
+            };
+            Err(self.error(problem, steps))
         } else {
             Err(self.error(Problem::value(what, value, expected), steps))
         }

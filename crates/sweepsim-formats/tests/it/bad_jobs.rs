@@ -97,7 +97,7 @@ fn one_message_with_its_place() {
         (
             grid,
             grid.replace("max: (10, 10)", "max: (10, inf)"),
-            "job.ron:4:39: a corner of the grid is inf",
+            "job.ron:4:39: a corner of the grid is too large, but must be finite, and at most 1e12",
         ),
         (
             grid,
@@ -118,6 +118,11 @@ fn one_message_with_its_place() {
             stock,
             "Cylinder(radius: -1, height: 5)".into(),
             "job.ron:5:29: radius is -1, but must be positive",
+        ),
+        (
+            stock,
+            "Cylinder(radius: 1e400, height: 5)".into(),
+            "job.ron:5:29: radius is too large, but must be positive, and at most 1e12",
         ),
         (
             stock,

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 use sweepsim::SweepError;
-use sweepsim_formats::FormatError;
+use sweepsim_formats::{DraftFault, FormatError};
 use sweepsim_nc::NcError;
 use thiserror::Error;
 
@@ -74,6 +74,16 @@ impl JobError {
 impl From<NcError> for JobError {
     fn from(error: NcError) -> Self {
         FormatError::from(error).into()
+    }
+}
+
+impl From<DraftFault> for JobError {
+    fn from(fault: DraftFault) -> Self {
+        match fault {
+            DraftFault::Option { option, problem } => Self::request(option, problem.to_string()),
+            DraftFault::File(error) => error.into(),
+            fault => Self::run(fault),
+        }
     }
 }
 

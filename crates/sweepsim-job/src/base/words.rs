@@ -346,21 +346,21 @@ pub fn proven(statement: &Statement) -> String {
 #[must_use]
 pub fn looked_at(scope: &Scope) -> String {
     // Directions with lines equally far apart are named together.
-    let mut groups: Vec<([f64; 2], Vec<&str>)> = Vec::new();
+    let mut groups: Vec<([String; 2], Vec<&str>)> = Vec::new();
     for lines in &scope.lines {
-        match groups.iter_mut().find(|(spacing, _)| *spacing == lines.spacing) {
+        let spacing = lines.spacing.map(length);
+        match groups.iter_mut().find(|(other, _)| *other == spacing) {
             Some((_, along)) => along.push(&lines.along),
-            None => groups.push((lines.spacing, vec![&lines.along])),
+            None => groups.push((spacing, vec![&lines.along])),
         }
     }
-    let group = |(spacing, along): &([f64; 2], Vec<&str>)| {
+    let group = |([a, b], along): &([String; 2], Vec<&str>)| {
         let along = match along.split_last() {
             Some((last, [])) => (*last).to_owned(),
             Some((last, first)) => format!("{} and {last}", first.join(", ")),
             None => String::new(),
         };
-        let [a, b] = spacing.map(length);
-        let apart = if a == b { a } else { format!("{a} × {b}") };
+        let apart = if a == b { a.clone() } else { format!("{a} × {b}") };
         format!("along {along} {apart} mm apart")
     };
     groups.iter().map(group).collect::<Vec<_>>().join(", ")

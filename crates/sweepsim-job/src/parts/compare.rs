@@ -164,7 +164,9 @@ impl CompareRequest {
 
     /// Both parts. A table of dexels takes the grid of the other part, unless the options name one.
     fn solids(&self) -> Result<[(Solid, Option<TargetFaces>); 2], JobError> {
-        let given = if self.grid.grid.is_some() || self.grid.area.is_some() {
+        let grid = &self.grid;
+        // Without a number of cells, an area says nothing about a table.
+        let given = if grid.grid.is_some() || (grid.area.is_some() && grid.cells.is_some()) {
             self.grid.grid(None)?
         } else {
             None

@@ -391,6 +391,6 @@ impl Request {
         if !(8..=4096).contains(&self.sweeping.tile) {
             return Err(JobError::request("tile", "expected a whole number from 8 to 4096"));
         }
-        Ok(())
+        task::check_outputs(self.task, &self.outputs, self.judging.proof)
     }
 }

@@ -1,5 +1,6 @@
 //! What a request asks for.
 
+use crate::base::JobError;
 use crate::warnings::Use;
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +68,18 @@ pub enum Output {
 impl Output {
     /// What is written if nothing else is asked for.
     pub const DEFAULT: [Self; 5] = [Self::Dexels, Self::Mesh, Self::Picture, Self::Report, Self::Certificate];
+}
+
+/// Refuses outputs that a task does not have.
+pub(super) fn check_outputs(task: Task, asked: &[Output], proof: bool) -> Result<(), JobError> {
+    if !asked.contains(&Output::Certificate) || (task == Task::Verify && proof) {
+        return Ok(());
+    }
+    let why = match task {
+        Task::Verify => "there is none without a proof: leave out --no-proof, or it",
+        _ => "expected dexels, mesh, picture, report, binary, tridexels or step: `verify` alone proves something",
+    };
+    Err(JobError::request("only certificate", why))
 }
 
 /// The directions of the dexels that meshes and pictures are made of.

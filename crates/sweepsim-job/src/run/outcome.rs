@@ -268,7 +268,13 @@ impl Outcome {
             match self.certificate()? {
                 Some(text) => sink.write("certificate.json", &mut |file| file.write_all(text.as_bytes()))?,
                 // That of an earlier run is none of this one.
-                None => drop(sink.remove("certificate.json")),
+                None => {
+                    sink.remove("certificate.json");
+                    if request.outputs.contains(&Output::Certificate) {
+                        let why = "there is no certificate.json: nothing was decided that it could be about";
+                        report.notes.push(why.to_owned());
+                    }
+                }
             }
         }
         if wants(Output::Report) {

@@ -188,7 +188,7 @@ fn of_program(file: &Path, request: &Request, given: Provided) -> Result<(Job, V
         options.stock = sweepsim_formats::DraftStock::Block { min, max };
     }
     let draft: Draft = draft_of(file, &options, &given)?;
-    let job = Job::parse_with(&draft.text, &draft.program, &given)?;
+    let job = draft.job(&draft.program, &given)?;
     Ok((job, draft.found, draft.guessed))
 }
 

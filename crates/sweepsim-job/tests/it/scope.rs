@@ -1,9 +1,10 @@
 //! What a verdict says that it is about.
 
 use crate::walls::{request, slotted};
+use sweepsim_formats::{Scope, ScopeLines};
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::{Body, BodyKind, Profile, ProfileSegment, Tool};
-use sweepsim_job::{Directions, Judging, Memory, Outcome, Output, Request, Verdict};
+use sweepsim_job::{Directions, Judging, Memory, Outcome, Output, Request, Verdict, words};
 
 fn run(request: Request) -> Outcome {
     request.plan().unwrap().run(&()).unwrap()
@@ -94,4 +95,17 @@ fn directions_are_those_that_were_looked_along() {
     assert_eq!(along(walls()), "zxy");
     assert_eq!(along(walls().directions(Directions::Z)), "z");
     assert_eq!(along(walls().directions(Directions::Xyz)), "zxy");
+}
+
+/// Lines whose spacings differ by rounding are named together.
+#[test]
+fn lines_equally_far_apart_are_named_together() {
+    let mut scope = Scope::default();
+    let spacings = [("z", [0.4, 0.4]), ("x", [0.4 + 1e-15, 0.4]), ("y", [0.4, 0.4 - 1e-15])];
+    for (along, spacing) in spacings {
+        let mut lines = ScopeLines::default();
+        (lines.along, lines.spacing) = (along.to_owned(), spacing);
+        scope.lines.push(lines);
+    }
+    assert_eq!(words::looked_at(&scope), "along z, x and y 0.4 mm apart");
 }

@@ -372,12 +372,9 @@ impl Track {
             made.call = self.place.call;
             made.joined = self.joined;
             made.tool = self.tool;
-            let shares = if self.feed_mode == FeedMode::InverseTime {
-                self.pieces
-            } else {
-                1
-            };
-            made.feed = self.feed.filter(|_| !rapid).map(|feed| feed * shares as f64);
+            if !rapid {
+                made.feed = self.feed_of_piece();
+            }
             if !(rapid && self.of_poses) {
                 made.feed_mode = self.feed_mode;
             }

@@ -22,6 +22,7 @@ pub struct ToolUsage {
     /// and of its rapids.
     pub rapid_length: f64,
     /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known: see [`Program::times`].
+    /// The dwells after the last move are those of its tool.
     pub seconds: f64,
     /// The duration of the rapids, in seconds: see [`Program::times`].
     pub rapid_seconds: f64,
@@ -85,6 +86,10 @@ impl Program {
             }
             last = Some(pose);
         });
+        let of_last = last.and_then(|last| all.iter_mut().find(|usage| usage.tool == last.tool));
+        if let Some(usage) = of_last {
+            usage.seconds += self.rest_at_end();
+        }
         all
     }
 }

@@ -130,8 +130,33 @@ fn what_is_refuted_is_not_proven() {
     assert!(one == two);
     // Nothing is left without a proof, not even from before.
     fs::write(folder.path("out/certificate.json"), &one).unwrap();
-    let all = ["verify", "bracket-faulty.ron", "--only", "certificate", "--out", "out"];
-    folder.run(&[&all[..], &["--no-proof"]].concat());
+    let all = [
+        "verify",
+        "bracket-faulty.ron",
+        "--cells",
+        "50x30",
+        "--no-proof",
+        "--out",
+        "out",
+    ];
+    folder.run(&all);
     assert!(!folder.written().contains(&"certificate.json".to_owned()));
+    let message = folder.bad(&[&all[..], &["--only", "report,certificate"]].concat());
+    assert!(
+        message.contains("--only certificate: there is none without a proof"),
+        "{message}"
+    );
     folder.bad(&["verify", "bracket.ron", "--no-proof", "--certificate", "none.json"]);
+}
+
+#[test]
+fn nothing_to_certify_is_said() {
+    let folder = Workdir::new(
+        "Job(stock: Block(min: (0, 0, 0), max: (9, 9, 5)), grid: Grid(cells: (9, 9)), tools: { 1: Flat(radius: 1, length: 9) }, paths: [Path(tool: 1, poses: [((-2, 5, 3), (0, 0, 1)), ((11, 5, 3), (0, 0, 1))])])",
+    );
+    let words = folder.good(&["verify", "job.ron", "--only", "certificate", "--out", "out"]);
+    assert!(
+        words.contains("there is no certificate.json: nothing was decided"),
+        "{words}"
+    );
 }

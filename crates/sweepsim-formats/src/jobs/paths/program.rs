@@ -59,6 +59,7 @@ pub(crate) fn of_program(
     let follows = !bodies.is_empty() || kinematics.is_some_and(has_limits);
     let beyond = kinematics.map_or_else(Vec::new, |kinematics| check(&program, kinematics));
     let mut times = kinematics.map(|_| times(&program));
+    let rest_at_end = program.rest_at_end();
     // Poses and positions make room for the paths as these grow.
     let (poses, positions) = (
         std::mem::take(&mut program.poses),
@@ -112,6 +113,9 @@ pub(crate) fn of_program(
         };
         let path = section.finish(&whole, law);
         paths.push(path.map_err(|(error, line)| at(Problem::Path(error), line))?);
+    }
+    if let Some(last) = paths.last_mut() {
+        last.dwell_seconds += rest_at_end;
     }
     if !has_feed {
         paths.iter_mut().for_each(|path| path.no_feed = Flags::default());

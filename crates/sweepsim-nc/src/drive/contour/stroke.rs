@@ -37,6 +37,16 @@ pub(crate) struct Stroke {
     pub exact_stop: bool,
 }
 
+impl Stroke {
+    /// This move as one of so many that share the time of their block, which a feed in inverse time is.
+    pub fn share_of(mut self, count: usize) -> Self {
+        if self.feed_mode == FeedMode::InverseTime {
+            self.feed = self.feed.map(|feed| feed * count as f64);
+        }
+        self
+    }
+}
+
 /// What waits for the next move.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {

@@ -6,6 +6,7 @@ use crate::drive::circular_arc::Arc;
 use crate::drive::driver::Coordinates;
 use crate::drive::track::Track;
 use crate::machines::Position;
+use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
 
 impl Track {
@@ -86,6 +87,19 @@ impl Track {
         let made = make(self);
         self.pieces = outer;
         made
+    }
+
+    /// The feed of each of the moves that the one that is made becomes.
+    pub(in crate::drive) fn feed_of_piece(&mut self) -> Option<f64> {
+        if !self.of_poses && self.feed.is_some_and(|feed| feed <= 0.0) {
+            let note = "the feed is not above 0: the control stops here, and the time of the move is not known";
+            self.notes.add_str(self.place.line, note);
+        }
+        let shares = match self.feed_mode {
+            FeedMode::InverseTime => self.pieces,
+            FeedMode::PerMinute | FeedMode::PerRevolution => 1,
+        };
+        self.feed.map(|feed| feed * shares as f64)
     }
 
     /// Where the tip is when the program says that the tool is at these points.

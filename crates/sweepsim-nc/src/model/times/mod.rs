@@ -62,6 +62,21 @@ impl Program {
         all
     }
 
+    /// How long the tool rests after the last move, in seconds: no [`MoveTime`] has these dwells.
+    #[must_use]
+    pub fn rest_at_end(&self) -> f64 {
+        let after = self
+            .events
+            .iter()
+            .rev()
+            .take_while(|event| event.pose >= self.poses.len());
+        let rests = after.map(|event| match event.kind {
+            EventKind::Dwell { seconds } => seconds,
+            _ => 0.0,
+        });
+        rests.sum()
+    }
+
     /// Gives what [`times`](Self::times) does one after the other, and keeps only those that later moves may still change.
     pub fn each_time(&self, each: impl FnMut(MoveTime)) {
         let mut clock = self.clock();

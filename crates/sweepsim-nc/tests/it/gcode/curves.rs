@@ -155,3 +155,17 @@ fn bad_splines() {
         assert_eq!(message(text, Controller::LinuxCnc), expected);
     }
 }
+
+/// A feed in inverse time is that of the block of a curve, and of a whole spline.
+#[test]
+fn chords_of_curves_share_the_time_of_their_block() {
+    let text = "G21 G90\nT1 M6\nG0 X0 Y0 Z0\nG93 G5 X10 Y0 I3 J4 P-3 Q4 F2\nG5.1 X20 Y0 I5 J5 F4\nG5.2 X25 Y5 P1 L3 F1\nX30 Y0 P1\nG5.3\nG1 X40 F3\n";
+    let program = read(text, Controller::LinuxCnc);
+    let times = program.times();
+    for (line, expected) in [(4, 30.0), (5, 15.0), (8, 60.0), (9, 20.0)] {
+        let all = || program.poses.iter().zip(&times).filter(|(pose, _)| pose.line == line);
+        let seconds: f64 = all().filter_map(|(_, time)| time.seconds).sum();
+        assert!((seconds - expected).abs() < 1e-9, "line {line}: {seconds}");
+        assert!(line == 9 || all().count() > 2);
+    }
+}

@@ -3,7 +3,7 @@
 use sweepsim_nc::{Controller, ReadOptions, gcode};
 
 /// Text, controller, message.
-const BAD: [(&str, Option<Controller>, &str); 52] = [
+const BAD: [(&str, Option<Controller>, &str); 53] = [
     (
         "G0 X0 Y0 Z0\nG1 F9 G68.2 P4 I9",
         None,
@@ -149,6 +149,11 @@ const BAD: [(&str, Option<Controller>, &str); 52] = [
         "G0 X0 Y0 Z9\nG83 X1 Z-5 R1",
         None,
         "2:1: G83 without Q: expected the depth of a peck",
+    ),
+    (
+        "G0 X0 Y0 Z9\nG83 X1 Z-5 R1 Q0",
+        None,
+        "2:1: the depth Q of a peck of G83 is 0, but must be more than 0",
     ),
     (
         "G0 X0 Y0 Z9\nG81 X1 Z-5 R1 L1.5",

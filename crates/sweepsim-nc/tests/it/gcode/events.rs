@@ -1,6 +1,6 @@
 //! Spindle, coolant, dwells, stops, messages and feeds, in their order.
 
-use sweepsim_nc::{Controller, FeedMode, ReadOptions, Units, gcode};
+use sweepsim_nc::{Controller, FeedMode, Program, ReadOptions, Units, gcode};
 
 use super::{options, program, program_with, tips};
 
@@ -136,5 +136,44 @@ fn the_text_of_messages_is_bounded() {
     assert_eq!(
         notes,
         ["line 3: a message beyond 64 MiB of them, or among too many events: left out (20190 times, first here)"]
+    );
+}
+
+/// Dwells after the last move belong to no move, but to its tool.
+#[test]
+fn dwells_after_the_last_move_count() {
+    let found = program("G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X100 F600\nG4 P2\nX0\nG4 P3\nM9\nG4 P4\nM30\n");
+    assert_eq!(found.rest_at_end(), 7.0);
+    assert_eq!(found.times().iter().map(|time| time.rest).sum::<f64>(), 2.0);
+    assert_eq!(found.usage()[0].seconds, 10.0 + 2.0 + 10.0 + 7.0);
+}
+
+/// One note, at the first move that has no feed to move at.
+#[test]
+fn feeds_must_be_positive() {
+    let said = |found: Program| {
+        let notes = found.notes.iter().map(ToString::to_string);
+        notes.filter(|note| note.contains("not above 0")).collect::<Vec<_>>()
+    };
+    let expected = |line: usize, times: &str| {
+        [format!(
+            "line {line}: the feed is not above 0: the control stops here, and the time of the move is not known{times}"
+        )]
+    };
+    let read = |text: &str| said(program_with(text, &options(Controller::Fanuc)));
+    assert_eq!(
+        read("G0 X0 Y0 Z0\nF-5\nG1 X1\nX2 F0\nX3 F9\n"),
+        expected(3, " (2 times, first here)")
+    );
+    assert_eq!(read("G0 X0 Y0 Z0 F0\nX5\nG1 X1 F9\n"), [""; 0]);
+    let siemens = "N10 G0 X0 Y0 Z0\nN20 G1 X1 F0\n";
+    assert_eq!(
+        said(sweepsim_nc::siemens::read(siemens, &ReadOptions::default()).unwrap()),
+        expected(2, "")
+    );
+    let klartext = "BEGIN PGM A MM\nL X+0 Y+0 Z+0 R0 FMAX\nL X+5 F0\nEND PGM A MM\n";
+    assert_eq!(
+        said(sweepsim_nc::heidenhain::read(klartext, &ReadOptions::default()).unwrap()),
+        expected(3, "")
     );
 }

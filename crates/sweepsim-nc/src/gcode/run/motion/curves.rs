@@ -207,10 +207,12 @@ impl Reader {
         self.track
             .note("splines are divided into chords within the tolerance of arcs");
         let [u, v, _] = self.modes.plane;
-        for [x, y] in curve.chords(self.track.arc_tolerance)? {
+        let chords = curve.chords(self.track.arc_tolerance)?;
+        let count = chords.len();
+        for [x, y] in chords {
             let mut end = start;
             (end[u], end[v]) = (x, y);
-            let stroke = self.stroke_to(end, self.track.abc, false);
+            let stroke = self.stroke_to(end, self.track.abc, false).share_of(count);
             self.give(stroke)?;
         }
         Ok(())
@@ -292,7 +294,7 @@ impl Reader {
                     .map(|p| [p[0][0] + t * (p[1][0] - p[0][0]), p[0][1] + t * (p[1][1] - p[0][1])])
                     .collect();
             }
-            let mut piece = stroke;
+            let mut piece = stroke.share_of(chords as usize);
             if k < chords as usize {
                 piece.end = [level[0][0], level[0][1], start[2]];
             }

@@ -237,12 +237,15 @@ impl Reader {
         let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), self.dwell_of(words));
         match cycle {
             73 | 83 => {
-                let peck = words.peck.unwrap_or(0.0);
-                let Some(peck) = Some(peck.abs()).filter(|peck| *peck > 0.0) else {
+                let Some(peck) = words.peck.map(f64::abs) else {
                     return Err(NcProblem::syntax(format!(
                         "G{cycle} without Q: expected the depth of a peck"
                     )));
                 };
+                if !(peck > 0.0) {
+                    let what = format!("the depth Q of a peck of G{cycle}");
+                    return Err(NcProblem::value(what, peck, "more than 0"));
+                }
                 hole.work = HoleWork::Pecks(Pecks {
                     first: plane - peck,
                     infeed: peck,
