@@ -4,7 +4,8 @@
 //! face's normal; on an edge, the sum of the normals of its two faces; at a vertex, the sum of those around it, each
 //! weighted by its angle there. This gives the right sign for every closed surface that does not intersect itself, even
 //! where the nearest point is on a sharp edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted
-//! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch, a ray tells the side.
+//! Pseudonormal*, 2005). Where triangles lie on each other, as between solids that touch or in a fold, a ray tells the
+//! side.
 
 use super::tree::{self, TreeNode};
 use super::{FaceSurfaces, Mesh, MeshError, TriangleSoup};
@@ -15,6 +16,8 @@ use std::sync::Arc;
 
 /// Squares of distances that differ by no more than this part are the same.
 const SAME: f64 = 1e-12;
+/// The square of a pseudonormal that is less tells no side: the triangles there are folded onto each other.
+const FOLDED: f64 = 1e-8;
 
 /// A triangle surface, prepared for distance queries. Clones share what was prepared.
 ///
@@ -241,18 +244,19 @@ impl DistanceTo {
         let mut as_near = SmallVec::new();
         let (number, place, part) = self.closest(p, (reach, wanted), &mut as_near)?;
         let off = sub(p, place);
-        let is_outside = |(number, part): (usize, NearestOn)| {
+        let side = |(number, part): (usize, NearestOn)| {
             let face = &self.prepared.faces[number];
-            let side = match part {
+            match part {
                 NearestOn::Inside => face.normal,
                 NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
                 NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
-            };
-            dot(off, side) >= 0.0
+            }
         };
+        let is_outside = |of| dot(off, side(of)) >= 0.0;
         let mut outside = is_outside((number, part));
+        let own = side((number, part));
         // Where triangles lie on each other, the side is on neither of them.
-        if as_near.into_iter().any(|other| is_outside(other) != outside) {
+        if dot(own, own) < FOLDED || as_near.into_iter().any(|other| is_outside(other) != outside) {
             outside = self.winding(p).map_or(outside, |winding| winding <= 0);
         }
         let away = dot(off, off).sqrt();

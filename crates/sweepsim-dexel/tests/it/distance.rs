@@ -126,3 +126,25 @@ fn sides_are_right_where_triangles_lie_on_each_other() {
     }
     assert!(counts[0] > 100 && counts[1] > 100, "{counts:?}");
 }
+
+/// A sheet without thickness that hangs from an edge of a block, into it or out of it: around its own edges, normals
+/// cancel each other.
+#[test]
+fn folds_have_the_side_of_what_is_around_them() {
+    for (tip, is_inside) in [([1.0, 1.0, 1.0], true), ([1.0, 3.0, 3.0], false)] {
+        let mut soup = TriangleSoup::block([0.0; 3], [2.0; 3]);
+        let [a, b] = [[0.0, 2.0, 2.0], [2.0, 2.0, 2.0]];
+        soup.triangles.extend([[a, b, tip], [b, a, tip]]);
+        let tree = DistanceTo::new(&soup).unwrap();
+        for off in [
+            [0.0, -0.1, 0.02],
+            [0.11, 0.0, -0.07],
+            [-0.1, 0.03, -0.1],
+            [0.0, 0.1, -0.13],
+        ] {
+            let p = [0, 1, 2].map(|k| tip[k] + off[k]);
+            let near = tree.nearest(p).unwrap();
+            assert_eq!(near.distance < 0.0, is_inside, "{p:?}: {near:?}");
+        }
+    }
+}

@@ -228,7 +228,8 @@ pub struct ReportedFinding {
     /// The tool's number; none for an excess.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tool: Option<u32>,
-    /// The body that touches, if it is not the cutter.
+    /// The part of the tool that touches, if it is not the cutter; all that it may be, as `shank or holder`, if that is
+    /// not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
     /// The two bodies that meet (`machine`).

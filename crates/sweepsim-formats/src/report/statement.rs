@@ -107,7 +107,7 @@ pub struct StatementWitness {
     pub time: f64,
     /// Where.
     pub place: [f64; 3],
-    /// The body, if it is not the cutter.
+    /// The part of the tool, if it is not the cutter; all that it may be, as `shank or holder`, if that is not known.
     pub body: Option<String>,
 }
 

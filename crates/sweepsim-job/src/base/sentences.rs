@@ -60,7 +60,9 @@ pub fn harm(finding: &ReportedFinding, report: &Report) -> String {
         text += ", seen between the lines";
     }
     if let Some(time) = finding.time {
-        text += &format!(", from {:.1} % of the move", 100.0 * time);
+        // Between the lines, it may have begun before.
+        let when = if finding.between { "at" } else { "from" };
+        text += &format!(", {when} {:.1} % of the move", 100.0 * time);
     }
     text
 }

@@ -99,7 +99,8 @@ pub(super) fn findings(
             fact("Limits of", format!("region {region}"));
         }
         if let Some(time) = found.time {
-            fact("Begins after", format!("{:.1} % of the move", 100.0 * time));
+            let when = if found.between { "Seen at" } else { "Begins after" };
+            fact(when, format!("{:.1} % of the move", 100.0 * time));
         }
         if let (None, Some(path), Some(number)) = (found.line, found.path, found.r#move) {
             fact("Move", format!("{number} of path {path}"));

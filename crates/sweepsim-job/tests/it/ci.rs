@@ -4,7 +4,7 @@ use crate::walls::{request, slotted};
 use std::path::Path;
 use sweepsim_job::dexel::Stock;
 use sweepsim_job::motion::{Body, BodyKind, Profile, ProfileSegment, Tool};
-use sweepsim_job::{AnnotationLevel, CiProgram, Judging, Memory, Outcome, Request};
+use sweepsim_job::{AnnotationLevel, CiProgram, Directions, Judging, Memory, Outcome, Request};
 
 fn root() -> &'static Path {
     Path::new("/shop")
@@ -133,4 +133,41 @@ fn what_cannot_be_read_is_at_its_line() {
     assert_eq!((first.level, first.line), (AnnotationLevel::Input, Some(3)), "{case:?}");
     assert_eq!(first.file, Path::new("parts/slot.nc"));
     assert!(first.columns.is_some() && !first.message.contains("slot.nc"));
+}
+
+/// Pins that no line meets, in the way of a holder.
+#[test]
+fn between_the_lines_the_part_of_the_tool_and_the_begin_are_not_known() {
+    let block = |min, max| Stock::Block { min, max };
+    let body = |kind, low: f64, high: f64, radius: f64| {
+        let line = |to| ProfileSegment::Line { to };
+        let outline = vec![line([radius, low]), line([radius, high]), line([0.0, high])];
+        let solid = Tool::from_profile(Profile::new([0.0, low], outline).unwrap());
+        Body { kind, solid }
+    };
+    let bodies = [
+        body(BodyKind::Shank, 6.0, 8.0, 2.0),
+        body(BodyKind::Holder, 8.0, 20.0, 8.0),
+    ];
+    let program = "T1 M6\nS900 M3\nG0 X-20 Y2 Z0.2\nG1 X60 F100\nM30\n";
+    let stock = Stock::Union(vec![
+        block([0.0, 0.0, -10.0], [40.0, 30.0, 0.0]),
+        block([20.05, 5.05, -1.0], [20.2, 5.2, 9.0]),
+    ]);
+    let request = Request::from_program("parts/pins.nc", program)
+        .tool(1, Tool::flat(2.0, 6.0).unwrap())
+        .bodies(1, bodies)
+        .cells([40, 30])
+        .stock(stock)
+        .fixture(block([30.05, -4.45, 0.0], [30.2, -4.3, 9.0]));
+    let (outcome, ci) = ci(request.directions(Directions::Z));
+    let collision = ci.cases.iter().find(|case| case.name == "collision").unwrap();
+    let message = &collision.annotations[0].message;
+    assert!(message.starts_with("Shank or holder hits the workpiece: "), "{message}");
+    assert!(message.contains("seen between the lines, at "), "{message}");
+    let statements = outcome.report().statements.as_ref().unwrap();
+    for (about, part) in [("collision", "shank or holder"), ("fixture", "cutter, shank or holder")] {
+        let statement = statements.iter().find(|statement| statement.about == about).unwrap();
+        assert_eq!(statement.witness.as_ref().unwrap().body.as_deref(), Some(part));
+    }
 }

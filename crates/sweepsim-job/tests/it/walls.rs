@@ -200,6 +200,25 @@ fn a_rib_that_is_milled_away_is_found() {
 }
 
 #[test]
+fn the_deepest_place_is_as_deep_as_is_said_where_limits_differ() {
+    let job = "Job(
+        grid: Grid(cells: (60, 40)),
+        stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
+        tools: {1: Flat(radius: 5, length: 30)},
+        paths: [Path(tool: 1, moves: [Start(((-8, 20, -4), (0, 0, 1))), Line(((68, 20, -4), (0, 0, 1)))])],
+        limits: Limits(gouge: 0.02, excess: 0.02, regions: [
+            Region(within: Block(min: (0, 0, -10), max: (30, 40, 0)), gouge: 0.2, excess: 0.02),
+        ]),
+    )";
+    let request = Request::from_job("slot.ron", job).target(slotted([15.0, 25.0], -3.9));
+    let outcome = request.plan().unwrap().run(&()).unwrap();
+    let statement = &outcome.report().statements.as_ref().unwrap()[0];
+    assert_eq!(statement.state, StatementState::Refuted);
+    let depth = -3.9 - statement.witness.as_ref().unwrap().place[2];
+    assert!((depth - statement.enclosure[0]).abs() < 1e-5, "{depth} {statement:?}");
+}
+
+#[test]
 fn nothing_is_proven_of_a_target_that_crosses_itself() {
     let mut target = slotted([15.0, 25.0], -4.0);
     // Into the floor, well beside the dexels' lines.

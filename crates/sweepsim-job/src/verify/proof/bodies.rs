@@ -2,7 +2,7 @@
 
 use super::{LISTED, Proof, Proven, deep, described, finding, place};
 use crate::base::JobError;
-use crate::verify::asked::Asked;
+use crate::verify::asked::{Asked, Moving};
 use crate::verify::texts::{ProgramTexts, name_of};
 use sweepsim_formats::{Job, Measure, Statement, StatementState};
 use sweepsim_proof::{Closest, Cutter, Enclosed, Target, closest_from, deepest_from, depth_claim, distance_claim};
@@ -78,7 +78,7 @@ fn kept_away(
     };
     let nearest = found.nearest.as_ref();
     statement.witness = nearest.map(|(path, witness)| described(job, texts, *path, witness));
-    name_body(job, &mut statement);
+    name_part(job, asked.moving, &mut statement);
     let mut findings = Vec::new();
     match statement.state {
         StatementState::Refuted => {
@@ -86,7 +86,7 @@ fn kept_away(
             for (path, witness) in &found.moves {
                 let mut own = finding(job, texts, kind, *path, witness);
                 own.near = witness.depth > 0.0;
-                own.body = body(job, own.tool);
+                own.body = part(job, asked.moving, own.tool);
                 findings.push(own);
             }
         }
@@ -147,32 +147,38 @@ fn kept_out(
     if statement.state == StatementState::Refuted {
         statement.reason = None;
     }
-    if about == "holder" {
-        name_body(job, &mut statement);
-    }
+    name_part(job, asked.moving, &mut statement);
     for own in &mut findings {
         own.kind = kind.to_owned();
-        if about == "holder" {
-            own.body = body(job, own.tool);
-        }
+        own.body = part(job, asked.moving, own.tool);
     }
     Ok(Proven::of(statement, findings, claims))
 }
 
-/// Says which body it was, in a statement about bodies alone.
-fn name_body(job: &Job, statement: &mut Statement) {
+/// Says which part of the tool it was, as far as it is known.
+pub(super) fn name_part(job: &Job, moving: Moving, statement: &mut Statement) {
     if let Some(witness) = &mut statement.witness {
-        witness.body = witness.path.and_then(|path| body(job, Some(job.paths[path].tool)));
+        witness.body = witness
+            .path
+            .and_then(|path| part(job, moving, Some(job.paths[path].tool)));
     }
 }
 
-/// The kind of the bodies of a tool, if there is only one.
-pub(super) fn body(job: &Job, tool: Option<u32>) -> Option<String> {
-    let own = job.bodies.get(&tool?)?;
-    let kind = own.first()?.kind;
-    own.iter()
-        .all(|body| body.kind == kind)
-        .then(|| name_of(kind).to_owned())
+/// Which parts of a tool it may be, if that is not the cutter alone: `shank or holder`.
+pub(super) fn part(job: &Job, moving: Moving, tool: Option<u32>) -> Option<String> {
+    let bodies = job.bodies.get(&tool?).filter(|_| moving != Moving::Cutters)?;
+    let cutter = (moving == Moving::Both).then_some("cutter");
+    let mut names = Vec::new();
+    for name in cutter.into_iter().chain(bodies.iter().map(|body| name_of(body.kind))) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let last = names.pop().filter(|last| *last != "cutter")?;
+    Some(match names.is_empty() {
+        true => last.to_owned(),
+        false => format!("{} or {last}", names.join(", ")),
+    })
 }
 
 type OfPath<T> = (usize, T);

@@ -331,13 +331,16 @@ fn with_lines(mut statement: Statement, findings: &[ReportedFinding]) -> Stateme
         return statement;
     };
     statement.state = StatementState::Refuted;
+    statement.reason = None;
+    if !is_distance && statement.witness.is_some() && statement.enclosure[0] > statement.limit {
+        return statement;
+    }
     // On a line, something is where it may not be: beyond the limit, by how much is not said.
     match statement.measure {
         Measure::Distance if deepest.near => statement.enclosure = [0.0, statement.limit],
         Measure::Distance => statement.enclosure = [0.0; 2],
         _ => statement.enclosure[0] = statement.enclosure[0].max(statement.limit),
     }
-    statement.reason = None;
     let mut witness = StatementWitness::default();
     (witness.path, witness.r#move) = (deepest.path, deepest.r#move);
     (witness.file, witness.line) = (deepest.file.clone(), deepest.line);

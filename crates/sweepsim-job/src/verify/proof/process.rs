@@ -1,7 +1,7 @@
 //! What is proven of the stock as it is at each time: shanks and holders beside it, and rapids through it. As rapids
 //! count all moves that must not cut: with the spindle stopped, or before the first feed.
 
-use super::bodies::body;
+use super::bodies::{name_part, part};
 use super::{LISTED, Proof, Proven, described, finding, place};
 use crate::base::JobError;
 use crate::session::CancelOnly;
@@ -117,8 +117,8 @@ fn said(proof: &Proof, texts: &mut ProgramTexts, movers: Movers, found: &Touched
     };
     statement.witness = worst.map(|(path, witness)| described(job, texts, path, &witness));
     let is_body = statement.about == "collision";
-    if let Some(witness) = statement.witness.as_mut().filter(|_| is_body) {
-        witness.body = witness.path.and_then(|path| body(job, Some(job.paths[path].tool)));
+    if is_body {
+        name_part(job, Moving::Bodies, &mut statement);
     }
     if statement.state == StatementState::Open {
         statement.open_count = found.open_count;
@@ -132,7 +132,7 @@ fn said(proof: &Proof, texts: &mut ProgramTexts, movers: Movers, found: &Touched
         let mut own = finding(job, texts, why.unwrap_or("collision"), *path, witness);
         own.near = is_distance && witness.depth > 0.0;
         if is_body {
-            own.body = body(job, own.tool);
+            own.body = part(job, Moving::Bodies, own.tool);
         }
         findings.push(own);
     }
