@@ -16,9 +16,9 @@ pub(crate) struct TriSolid {
     pub uncertified: usize,
 }
 
-/// The margin above the part, and the least one below, in units of the spacing. Not a whole number, nor half of one, so
-/// that no level of dexels lies in a flat face that is a whole number of them below the top.
-const ROOM: f64 = 1.37;
+/// The margin above the part, and the least one below, in units of the spacing. A flat face that is a whole number of
+/// them below the top is about half-way between two levels, and one half-way between such faces is in no level either.
+const ROOM: f64 = 1.04;
 
 /// How many times as many dexels one of the other directions may have, unless it is asked for.
 const MOST: f64 = 4.0;
