@@ -16,9 +16,11 @@ pub(crate) struct TriSolid {
     pub uncertified: usize,
 }
 
-/// The margin above the part, and the least one below, in units of the spacing. A flat face that is a whole number of
-/// them below the top is about half-way between two levels, and one half-way between such faces is in no level either.
-const ROOM: f64 = 1.04;
+/// The least margin above and below the part, in units of the spacing.
+const ROOM: f64 = 1.37;
+/// Flat faces at the top and at the bottom are farther than this from all levels, in units of the spacing: a level in a
+/// face would count as material or not as rounding has it.
+const OFF_FACES: f64 = 0.1;
 
 /// How many times as many dexels one of the other directions may have, unless it is asked for.
 const MOST: f64 = 4.0;
@@ -110,10 +112,14 @@ fn ends(dexels: &Dexels) -> Option<[f64; 2]> {
 pub(crate) fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
     let [dx, dy] = grid.spacing();
     let step = (dx * dy).sqrt();
-    let levels = ((high - low) / step + 2.0 * ROOM).ceil();
-    let top = high + ROOM * step;
+    let height = (high - low) / step;
+    let least = (height + 2.0 * ROOM).ceil();
+    // The first level is half a spacing within the margin. One more moves all of them by half a spacing.
+    let off_faces = ((0.5 * (least - height)).fract() - 0.5).abs();
+    let levels = if off_faces < OFF_FACES { least + 1.0 } else { least };
+    let room = 0.5 * (levels - height) * step;
     let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
-    ([x0, y0, top - levels * step], [x1, y1, top], [nx, ny, levels as usize])
+    ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize])
 }
 
 /// The box and the cells of a job: those of an earlier run, if it goes on with one; else over these heights.
