@@ -16,9 +16,11 @@ pub(crate) struct TriSolid {
     pub uncertified: usize,
 }
 
-/// The margin above and below the part, in units of the spacing. Not a whole number, so that no level of dexels lies in
-/// a flat face that is a whole number of them below the top.
+/// The least margin above and below the part, in units of the spacing.
 const ROOM: f64 = 1.37;
+/// Flat faces at the top and at the bottom are farther than this from all levels, in units of the spacing: a level in a
+/// face would count as material or not as rounding has it.
+const OFF_FACES: f64 = 0.1;
 
 /// How many times as many dexels one of the other directions may have, unless it is asked for.
 const MOST: f64 = 4.0;
@@ -110,8 +112,12 @@ fn ends(dexels: &Dexels) -> Option<[f64; 2]> {
 pub(crate) fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
     let [dx, dy] = grid.spacing();
     let step = (dx * dy).sqrt();
-    let levels = ((high - low) / step + 2.0 * ROOM).ceil();
-    let room = 0.5 * (levels * step - (high - low));
+    let height = (high - low) / step;
+    let least = (height + 2.0 * ROOM).ceil();
+    // The first level is half a spacing within the margin. One more moves all of them by half a spacing.
+    let off_faces = ((0.5 * (least - height)).fract() - 0.5).abs();
+    let levels = if off_faces < OFF_FACES { least + 1.0 } else { least };
+    let room = 0.5 * (levels - height) * step;
     let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
     ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize])
 }
@@ -240,4 +246,25 @@ fn cut(
         }
     };
     Ok((set, statistics.unresolved.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block that is a whole number of levels high has that many of them, and none in its faces.
+    #[test]
+    fn along_all_axes_a_block_has_its_volume() {
+        for (cells, height) in [([80, 60], 20.0), ([40, 30], 20.0), ([40, 30], 1.0), ([80, 60], 0.5)] {
+            let grid = Grid::new([0.0; 2], [40.0, 30.0], cells).unwrap();
+            let range = [-20.0, -20.0 + height];
+            let (min, max, cells) = lattice(&grid, range);
+            let (low, high) = ([0.0, 0.0, range[0]], [40.0, 30.0, range[1]]);
+            let sets = TriDexels::new(min, max, cells, &Stock::Block { min: low, max: high });
+            for set in sets.unwrap().into_sets() {
+                let off = set.volume() - 1200.0 * height;
+                assert!(off.abs() < 1e-6, "{off} mm³ too many of a block {height} mm high");
+            }
+        }
+    }
 }
