@@ -133,9 +133,9 @@ impl Dexels {
     /// ```
     /// use sweepsim_dexel::{Dexels, Grid, Stock};
     /// let grid = Grid::new([0.0, 0.0], [5.0, 5.0], [50, 40])?;
-    /// let whole = Stock::Ball { centre: [2.0, 3.0, 1.0], radius: 1.9 };
-    /// let tiles = grid.tiles(16).iter().map(|tile| whole.dexels(tile)).collect::<Result<Vec<_>, _>>()?;
-    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, whole.dexels(&grid)?);
+    /// let ball = Stock::Ball { centre: [2.0, 3.0, 1.0], radius: 1.9 };
+    /// let tiles = grid.tiles(16).iter().map(|tile| ball.dexels(tile)).collect::<Result<Vec<_>, _>>()?;
+    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, ball.dexels(&grid)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_tiles(grid: Grid, mut tiles: Vec<Self>) -> Result<Self, TilesError> {
