@@ -44,7 +44,7 @@ pub use mesh::{
     TriangleSoup,
 };
 pub use stock::{Stock, StockError};
-pub use tri::{SurfaceEnd, SurfaceEnds, TriDexels, TriDexelsError};
+pub use tri::{ChangingSurface, SurfaceEnd, SurfaceEnds, TimedMesh, TriDexels, TriDexelsError};
 
 /// What tests look at from outside; no promise is made of it. Such tests are not compiled along with a second library.
 #[doc(hidden)]

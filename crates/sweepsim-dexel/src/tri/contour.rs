@@ -56,6 +56,11 @@ pub(crate) fn contour_with_ends(solid: &TriDexels, most: usize) -> Result<(Mesh,
 /// A mesh, and the edge of the lattice that each triangle is around.
 type Made = (Mesh, Vec<LatticeEdge>);
 
+/// The surface around the edges of a lattice all four cells of which are in it.
+pub(super) fn in_box(lattice: &Lattice, most: usize) -> Result<Made, MeshError> {
+    faces_of(lattice, most, &Held::default())
+}
+
 /// How often more is held, at most, where triangles cross.
 const ROUNDS: usize = 8;
 
@@ -106,6 +111,9 @@ fn faces_of(lattice: &Lattice, most: usize, held: &Held) -> Result<Made, MeshErr
             let (mut triangles, mut made, mut rest) = (Vec::new(), Vec::new(), Vec::new());
             for (at, hit) in hits[axis].slab(lattice, number) {
                 let face = Face { axis, at, hit };
+                if !face.has_cells(lattice) {
+                    continue;
+                }
                 let ring = face.ring(lattice, &vertex);
                 if ring.keys.iter().all(Option::is_none) && !held.has_fan(lattice, (axis, at)) {
                     triangles.extend(face.halves(lattice, &mesh, ring.corners));
@@ -282,6 +290,13 @@ struct Ring {
 }
 
 impl Face<'_> {
+    /// Whether the four cells around the edge are in the lattice.
+    fn has_cells(&self, lattice: &Lattice) -> bool {
+        let across = [1, 2].map(|k| (self.axis + k) % 3);
+        let is_within = |c: usize| (1..lattice.points[c] - 1).contains(&self.at[c]);
+        across.into_iter().all(is_within)
+    }
+
     fn ring(&self, lattice: &Lattice, vertex: &impl Fn([usize; 3], usize) -> u32) -> Ring {
         let (axis, at) = (self.axis, self.at);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -6,12 +6,16 @@ use crate::dexels::{Dexels, Line};
 use crate::intervals::{End, Source};
 use rayon::prelude::*;
 
-/// Points where lines of all three sets cross, with a rim of points without material around them.
+/// Points where lines of all three sets cross, with a rim of points without material around them; or a box of these.
 pub(super) struct Lattice<'a> {
     sets: &'a [Dexels; 3],
     min: [f64; 3],
     step: [f64; 3],
-    /// Points along each axis, with the rim.
+    /// The last point along each axis, with the rim, counted over the whole lattice.
+    last: [usize; 3],
+    /// The first point of the box, counted over the whole lattice.
+    pub first: [usize; 3],
+    /// Points of the box along each axis.
     pub points: [usize; 3],
     /// A bit for each point, those with one first number in whole words.
     inside: Vec<u64>,
@@ -24,12 +28,19 @@ const SLACK: f64 = 1e-3;
 
 impl<'a> Lattice<'a> {
     pub fn new(solid: &'a TriDexels) -> Self {
-        let (min, max, cells) = (solid.min(), solid.max(), solid.cells());
+        Self::within(solid, [[0; 3], solid.cells().map(|n| n + 1)])
+    }
+
+    /// The points from a first to a last one.
+    pub fn within(solid: &'a TriDexels, [first, end]: [[usize; 3]; 2]) -> Self {
+        let (min, cells) = (solid.min(), solid.cells());
         let mut lattice = Self {
             sets: solid.sets(),
             min,
-            step: [0, 1, 2].map(|c| (max[c] - min[c]) / cells[c] as f64),
-            points: cells.map(|n| n + 2),
+            step: solid.spacing(),
+            last: cells.map(|n| n + 1),
+            first,
+            points: [0, 1, 2].map(|c| end[c] - first[c] + 1),
             inside: Vec::new(),
             disagreements: 0,
         };
@@ -45,26 +56,30 @@ impl<'a> Lattice<'a> {
 
     /// The points with a first number, by the majority of the sets.
     fn slab(&self, i: usize) -> (Vec<u64>, usize) {
-        let [columns, rows, levels] = self.points;
-        if i == 0 || i == columns - 1 {
+        let [_, rows, levels] = self.points;
+        let Some(x_line) = self.line_number(0, i) else {
             return (vec![0; self.words()], 0);
-        }
+        };
+        let lines = |axis: usize| {
+            let all = 0..self.points[axis];
+            all.filter_map(move |n| Some((n, self.line_number(axis, n)?)))
+        };
         let mut votes = vec![0_u8; rows * levels];
         let index = |j: usize, k: usize| j * levels + k;
-        for j in 1..rows - 1 {
-            let line = self.sets[2].intervals(i - 1, j - 1);
+        for (j, y_line) in lines(1) {
+            let line = self.sets[2].intervals(x_line, y_line);
             for [lower, upper] in line.heights() {
                 self.points_in(2, lower, upper).for_each(|k| votes[index(j, k)] += 1);
             }
         }
-        for k in 1..levels - 1 {
-            let line = self.sets[1].intervals(k - 1, i - 1);
+        for (k, z_line) in lines(2) {
+            let line = self.sets[1].intervals(z_line, x_line);
             for [lower, upper] in line.heights() {
                 self.points_in(1, lower, upper).for_each(|j| votes[index(j, k)] += 1);
             }
             let x = self.coordinate(0, i);
-            for j in 1..rows - 1 {
-                let mut line = self.sets[0].intervals(j - 1, k - 1).heights();
+            for (j, y_line) in lines(1) {
+                let mut line = self.sets[0].intervals(y_line, z_line).heights();
                 votes[index(j, k)] += u8::from(line.any(|[lower, upper]| lower <= x && x < upper));
             }
         }
@@ -83,12 +98,17 @@ impl<'a> Lattice<'a> {
 
     /// The numbers of the points along an axis from a lower to below an upper height.
     fn points_in(&self, axis: usize, lower: f64, upper: f64) -> std::ops::Range<usize> {
-        let last = self.points[axis] - 1;
+        let first = self.first[axis];
+        // Never on the rim.
+        let least = usize::from(first == 0);
+        let end = self.points[axis].min(self.last[axis] - first);
         let first_from = |height: f64| {
-            let guess = (height - self.min[axis]) / self.step[axis] + 0.5;
+            let guess = (height - self.min[axis]) / self.step[axis] + 0.5 - first as f64;
             // Off by at most one, due to rounding.
-            let mut n = (guess.ceil().clamp(1.0, last as f64) as usize).saturating_sub(1).max(1);
-            while n < last && self.coordinate(axis, n) < height {
+            let mut n = (guess.ceil().clamp(0.0, end as f64) as usize)
+                .saturating_sub(1)
+                .max(least);
+            while n < end && self.coordinate(axis, n) < height {
                 n += 1;
             }
             n
@@ -96,9 +116,21 @@ impl<'a> Lattice<'a> {
         first_from(lower)..first_from(upper)
     }
 
+    /// The number of the lines at point `n` of an axis across them; none on the rim.
+    fn line_number(&self, axis: usize, n: usize) -> Option<usize> {
+        let whole = self.first[axis] + n;
+        (whole < self.last[axis]).then(|| whole.checked_sub(1))?
+    }
+
+    /// Whether the edge before point `n` of an axis leads from the rim, and whether it leads there.
+    fn is_at_box(&self, axis: usize, n: usize) -> [bool; 2] {
+        let whole = self.first[axis] + n;
+        [whole == 1, whole == self.last[axis]]
+    }
+
     /// The position of point `n` of an axis.
     pub fn coordinate(&self, axis: usize, n: usize) -> f64 {
-        self.min[axis] + (n as f64 - 0.5) * self.step[axis]
+        self.min[axis] + ((self.first[axis] + n) as f64 - 0.5) * self.step[axis]
     }
 
     pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
@@ -150,17 +182,22 @@ impl<'a> Lattice<'a> {
         all
     }
 
+    /// The intervals of the line along an axis at these points of the axes after it; none on the rim.
+    fn intervals(&self, axis: usize, i: usize, j: usize) -> Option<Line<'a>> {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        Some(self.sets[axis].intervals(self.line_number(u, i)?, self.line_number(v, j)?))
+    }
+
     /// Appends the hits of a line.
     fn line(&self, axis: usize, i: usize, j: usize, hits: &mut Vec<Hit>) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        if i == 0 || j == 0 || i == self.points[u] - 1 || j == self.points[v] - 1 {
+        let Some(intervals) = self.intervals(axis, i, j) else {
             return;
-        }
-        let intervals = self.sets[axis].intervals(i - 1, j - 1);
+        };
         let mut point = [0; 3];
         (point[u], point[v]) = (i, j);
-        let mut before = false;
-        for n in 0..self.points[axis] {
+        let mut before = self.inside(point);
+        for n in 1..self.points[axis] {
             point[axis] = n;
             let inside = self.inside(point);
             if inside == before {
@@ -169,7 +206,7 @@ impl<'a> Lattice<'a> {
             before = inside;
             let (low, high) = (self.coordinate(axis, n - 1), self.coordinate(axis, n));
             let face = 0.5 * (low + high);
-            let (bottom, top) = (n == 1, n == self.points[axis] - 1);
+            let [bottom, top] = self.is_at_box(axis, n);
             let end = self.end(&intervals, axis, n, inside);
             hits.push(Hit {
                 edge: (n - 1) as u32,
@@ -206,7 +243,7 @@ impl<'a> Lattice<'a> {
             intervals.iter().map(|i| i.upper).find(|end| near(end.z))
         };
         let face = 0.5 * (low + high);
-        let (bottom, top) = (n == 1, n == self.points[axis] - 1);
+        let [bottom, top] = self.is_at_box(axis, n);
         end.filter(|end| !(bottom && end.z < face || top && end.z > face))
     }
 
@@ -217,15 +254,14 @@ impl<'a> Lattice<'a> {
         self.line(axis, at[u], at[v], &mut hits);
         let found = hits.iter().find(|hit| hit.edge as usize == at[axis]);
         let source = found.and_then(|hit| {
-            let intervals = self.sets[axis].intervals(at[u] - 1, at[v] - 1);
+            let intervals = self.intervals(axis, at[u], at[v])?;
             self.end(&intervals, axis, at[axis] + 1, !hit.upper)
         });
-        let ends = [0, self.points[axis] - 2];
         SurfaceEnd {
             place: found.map_or([f64::NAN; 3], |hit| self.place(axis, at, hit)),
             normal: found.and_then(|hit| hit.normal).map(|normal| normal.map(f64::from)),
             source: source.map_or(Source::Stock, |end| end.source),
-            at_box: source.is_none() && ends.contains(&at[axis]),
+            at_box: source.is_none() && self.is_at_box(axis, at[axis] + 1).contains(&true),
         }
     }
 

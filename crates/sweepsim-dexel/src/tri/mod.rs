@@ -1,6 +1,7 @@
 //! Dexels along all three axes.
 
 mod cell;
+mod changing;
 pub mod contour;
 mod ends;
 mod held;
@@ -14,6 +15,7 @@ use crate::intervals::Source;
 use crate::mesh::{MOST_VERTICES, Mesh, MeshError};
 use crate::stock::{Stock, StockError};
 use crate::surface::sources_in;
+pub use changing::{ChangingSurface, TimedMesh};
 pub use ends::{SurfaceEnd, SurfaceEnds};
 use thiserror::Error;
 
@@ -136,6 +138,12 @@ impl TriDexels {
     #[must_use]
     pub fn cells(&self) -> [usize; 3] {
         self.cells
+    }
+
+    /// The distances of lines along the axes.
+    #[must_use]
+    pub fn spacing(&self) -> [f64; 3] {
+        [0, 1, 2].map(|c| (self.max[c] - self.min[c]) / self.cells[c] as f64)
     }
 
     /// The sets along `x`, `y` and `z`.

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-dexel`, in one binary: it links once.
 
+mod changing;
 mod cluster;
 mod common;
 mod compare;
