@@ -5,17 +5,14 @@ layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 colour;
 layout(location = 3) in float share; // of the limit
-layout(location = 4) in float since; // the moment from which a triangle is seen
 uniform mat4 model;
 uniform mat4 camera;
 out vec3 atWorld;
 out vec3 facing;
 flat out vec3 tint;
 out float deviation;
-flat out float begins;
 void main() {
   deviation = share;
-  begins = since;
   vec4 world = model * vec4(place, 1.0);
   atWorld = world.xyz;
   facing = mat3(model) * normal;
@@ -29,8 +26,6 @@ in vec3 atWorld;
 in vec3 facing;
 flat in vec3 tint;
 in float deviation;
-flat in float begins;
-uniform float moment;
 uniform bool banded;     // coloured by the share of the limit, which is known up to 1e6
 uniform float steps[8];
 uniform vec3 bands[9];
@@ -42,7 +37,7 @@ uniform float alpha;
 uniform bool unlit;
 out vec4 pixel;
 void main() {
-  if (begins > moment || dot(section.xyz, atWorld) > section.w) discard;
+  if (dot(section.xyz, atWorld) > section.w) discard;
   vec3 base = flatColour.a > 0.0 ? flatColour.rgb : tint;
   if (banded && deviation < 1e6) {
     base = bands[8];
@@ -82,7 +77,7 @@ class Shape {
     this.corners = null;
     this.sides = null;
     gl.bindVertexArray(this.array);
-    this.extra = [gl.createBuffer(), gl.createBuffer()];
+    this.extra = gl.createBuffer();
     const layout = [
       [3, gl.FLOAT, false, 12],
       [3, gl.BYTE, true, 4],
@@ -126,17 +121,20 @@ class Shape {
     this.put(2, bytes);
   }
 
-  /** Takes over triangles with their corners; colours and shares of limits follow by `attribute`. */
-  indexed(places, normals, corners) {
-    const { gl } = this;
+  /** Takes over corners, of which `triangles` are made; colours and shares of limits follow by `put` and `shares`. */
+  places(places, normals) {
     this.put(0, places);
     this.put(1, normals);
+  }
+
+  triangles(corners) {
+    const { gl } = this;
     gl.bindVertexArray(this.array);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.DYNAMIC_DRAW);
     gl.bindVertexArray(null);
     this.count = corners.length;
     this.mode = gl.TRIANGLES;
-    this.corners = corners;
+    [this.corners, this.sides, this.coarseCount] = [corners, null, 0];
   }
 
   /** The sides of its triangles become known, for `draw` with `wires`. */
@@ -144,10 +142,10 @@ class Shape {
     const { gl, corners } = this;
     if (this.sides || !corners) return;
     const lines = new Uint32Array(2 * corners.length);
-    // Numbers of the corners that begin and end the three sides: most end where it is known when a triangle is seen.
-    const order = [0, 2, 1, 2, 0, 1];
+    // Numbers of the corners that begin and end the three sides.
+    const order = [0, 1, 1, 2, 2, 0];
     for (let k = 0; k < lines.length; k++) lines[k] = corners[3 * Math.floor(k / 6) + order[k % 6]];
-    this.sides = gl.createBuffer();
+    this.sides = this.sideIndices ??= gl.createBuffer();
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.sides);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, lines, gl.STATIC_DRAW);
@@ -158,7 +156,7 @@ class Shape {
   /** Other corners of the same places, for `draw` with `coarse`. */
   coarser(corners) {
     const { gl } = this;
-    this.coarseIndices = gl.createBuffer();
+    this.coarseIndices ??= gl.createBuffer();
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.coarseIndices);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
@@ -167,14 +165,14 @@ class Shape {
     this.coarseCount = corners.length;
   }
 
-  /** A number for each corner: attribute 3 or 4. */
-  attribute(k, numbers) {
+  /** Of each corner the share of the limit. */
+  shares(numbers) {
     const { gl } = this;
     gl.bindVertexArray(this.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.extra[k - 3]);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.extra);
     gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
-    gl.enableVertexAttribArray(k);
-    gl.vertexAttribPointer(k, 1, gl.FLOAT, false, 4, 0);
+    gl.enableVertexAttribArray(3);
+    gl.vertexAttribPointer(3, 1, gl.FLOAT, false, 4, 0);
     gl.bindVertexArray(null);
   }
 
@@ -212,7 +210,7 @@ class Gpu {
     gl.linkProgram(this.program);
     if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
     this.at = (name) => gl.getUniformLocation(this.program, name);
-    this.places = Object.fromEntries(["model", "camera", "section", "eye", "flatColour", "inside", "alpha", "unlit", "moment", "banded", "steps", "bands"].map((n) => [n, this.at(n)]));
+    this.places = Object.fromEntries(["model", "camera", "section", "eye", "flatColour", "inside", "alpha", "unlit", "banded", "steps", "bands"].map((n) => [n, this.at(n)]));
     gl.useProgram(this.program);
     gl.uniform1fv(this.places.steps, STEPS);
     gl.uniform3fv(this.places.bands, DEVIATIONS.flat().map((c) => c / 255));
@@ -234,8 +232,8 @@ class Gpu {
     this.section = section;
   }
 
-  /** Draws a shape. Options: model, colour, alpha, unlit, uncut; banded: by the share of the limit; moment: what begins to be seen later is left out; behind: a little farther away than it is; coarse: by its coarser corners; wires: only the sides of its triangles. */
-  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false, banded = false, moment = 1e9, behind = false, coarse = false, wires = false } = {}) {
+  /** Draws a shape. Options: model, colour, alpha, unlit, uncut; banded: by the share of the limit; behind: a little farther away than it is; coarse: by its coarser corners; wires: only the sides of its triangles. */
+  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false, banded = false, behind = false, coarse = false, wires = false } = {}) {
     if (!shape.count) return;
     const { gl, places, section } = this;
     gl.uniformMatrix4fv(places.model, false, model);
@@ -244,7 +242,6 @@ class Gpu {
     gl.uniform1f(places.alpha, alpha);
     gl.uniform1i(places.unlit, unlit ? 1 : 0);
     gl.uniform1i(places.banded, banded ? 1 : 0);
-    gl.uniform1f(places.moment, moment);
     const clear = alpha < 1;
     if (behind) {
       gl.enable(gl.POLYGON_OFFSET_FILL);

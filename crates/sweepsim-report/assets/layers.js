@@ -44,7 +44,18 @@ function finalLayer(head) {
   return layer;
 }
 
-/** The workpiece at the moments of the program. Ends carry the moment that made them, 0 for the stock. */
+/** How many of these moments have passed at a time. */
+function momentAt(clocks, clock) {
+  let [low, high] = [0, clocks.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (clocks[middle] <= clock + 1e-9) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The workpiece at the moments of the program, on lines. Ends carry the moment that made them, 0 for the stock. */
 class Course {
   constructor(head) {
     const d = head.data;
@@ -66,31 +77,11 @@ class Course {
       return own;
     });
     this.reset();
-    this.seek(this.clocks.length);
-    this.last = this.lines;
-    this.reset();
   }
 
   reset() {
     this.moment = 0;
     this.lines = this.begin.slice();
-  }
-
-  /** The lines that change between the moment before and this one, from 1. */
-  changed(moment) {
-    const [from, to] = [this.offsets[moment - 1][0], this.offsets[moment][0]];
-    return this.head.data["frames.line"].subarray(from, to);
-  }
-
-  /** The number of moments that have passed at a time. */
-  momentAt(clock) {
-    let [low, high] = [0, this.clocks.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.clocks[middle] <= clock + 1e-9) low = middle + 1;
-      else high = middle;
-    }
-    return low;
   }
 
   /** Goes to a moment: forwards from the present one, or from the start. */
@@ -114,20 +105,6 @@ class Course {
         this.lines[d["frames.line"][at]] = own;
       }
     }
-  }
-
-  /** Of each line, whether it and its neighbours are as at the end. */
-  settled() {
-    const { nx, ny } = this.start;
-    const same = Uint8Array.from(this.lines, (line, n) => line === this.last[n]);
-    const settled = same.slice();
-    for (let i = 0; i < nx; i++)
-      for (let j = 0; j < ny; j++)
-        for (const [a, b] of [[-1, 0], [1, 0], [0, -1], [0, 1]]) {
-          const inside = i + a >= 0 && j + b >= 0 && i + a < nx && j + b < ny;
-          if (inside && !same[(i + a) * ny + j + b]) settled[i * ny + j] = 0;
-        }
-    return settled;
   }
 
   /** The workpiece as a layer. Where it is as at the end already, it looks as at the end. */

@@ -35,8 +35,8 @@ class Solid {
     }
   }
 
-  /** The first triangle that a ray of the world meets between two distances, if `accept(triangle)` agrees: distance, triangle, shares of its second and third corner, and normal. */
-  first(origin, towards, [from, to], accept) {
+  /** The first triangle that a ray of the world meets between two distances: distance, triangle, shares of its second and third corner, and normal. */
+  first(origin, towards, [from, to]) {
     if (!this.boxes) this.prepare();
     const world = inverted(this.model);
     const o = transformed(world, origin).slice(0, 3);
@@ -58,7 +58,7 @@ class Solid {
       const end = Math.min((b + 1) * BLOCK, this.count);
       for (let t = b * BLOCK; t < end; t++) {
         const found = meets(o, d, this.corner(t, 0), this.corner(t, 1), this.corner(t, 2));
-        if (!found || found[0] < from || found[0] >= best || (accept && !accept(t))) continue;
+        if (!found || found[0] < from || found[0] >= best) continue;
         best = found[0];
         hit = { far: best, triangle: t, u: found[1], v: found[2], solid: this };
       }

@@ -1,4 +1,4 @@
-// The part's surface as triangles, with sharp walls: what is seen of it at any moment, and what is known of it.
+// The surface of the part or of the workpiece as triangles, with sharp walls: what is there at any moment, and what is known of it.
 
 /** Cells along the longest side of the part, of the surface that is drawn while the view moves. */
 const COARSE = 90;
@@ -6,29 +6,31 @@ const COARSE = 90;
 const LARGE = 60000;
 
 class Sharp {
-  constructor(head) {
-    const d = head.data;
-    const { places, farthest, whole } = head.surface;
-    Object.assign(this, { farthest, whole });
+  /** The surface of the part, or with `course` that of the workpiece at all moments, for a shape to draw. */
+  constructor(head, name, shape) {
+    const d = (array) => head.data[`${name}.${array}`];
+    const { places } = name === "course" ? head.surface_course : head.surface;
+    this.shape = shape;
     this.step = head.deviation;
-    const count = d["surface.x"].length;
+    const count = d("x").length;
     this.places = new Float32Array(3 * count);
-    ["surface.x", "surface.y", "surface.z"].forEach((name, k) => {
+    ["x", "y", "z"].forEach((array, k) => {
       const { from, step } = places[k];
-      const steps = d[name];
+      const steps = d(array);
       for (let v = 0; v < count; v++) this.places[3 * v + k] = from + steps[v] * step;
     });
     this.normals = new Int8Array(4 * count);
+    const [us, vs] = [d("u"), d("v")];
     for (let v = 0; v < count; v++) {
-      const normal = fromOctahedron(d["surface.u"][v] / 127, d["surface.v"][v] / 127);
+      const normal = fromOctahedron(us[v] / 127, vs[v] / 127);
       for (let k = 0; k < 3; k++) this.normals[4 * v + k] = 127 * normal[k];
     }
-    this.corners = d["surface.corners"];
-    this.makers = d["surface.maker"];
-    this.deviations = d["surface.deviation"] ?? null;
-    this.count = this.corners.length / 3;
-    /** Of each triangle, as of its last corner, the moment from which it is seen. */
-    this.since = new Float32Array(count);
+    this.makers = d("maker");
+    this.deviations = d("deviation") ?? null;
+    [this.all, this.from, this.to] = [d("corners"), d("from"), d("to")];
+    shape.places(this.places, this.normals);
+    if (name === "course") this.seek(0);
+    else this.take(this.all);
   }
 
   /** What made a triangle: 0 for the stock, else 1 plus the number of the move. */
@@ -55,64 +57,34 @@ class Sharp {
     return moved;
   }
 
-  /** Where triangles begin to be seen: from the moment at which a point just outside of them is free. */
-  follow(course, frame) {
-    const { start } = course;
-    const reach = 0.75 * Math.max(...start.spacing);
-    const world = inverted(frame);
-    // Triangles by the line beside them, and the heights of the points outside.
-    const lines = new Int32Array(this.count).fill(-1);
-    const heights = new Float32Array(this.count);
-    const first = new Uint32Array(start.nx * start.ny + 1);
-    for (let t = 0; t < this.count; t++) {
-      const corners = [0, 1, 2].map((k) => this.place(this.corners[3 * t + k]));
-      const normal = unit(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])));
-      const middle = corners.reduce((sum, p) => add(sum, scaled(p, 1 / 3)), scaled(normal, reach));
-      const local = transformed(world, middle);
-      const cell = start.nearest(local);
-      if (!cell) continue;
-      lines[t] = cell[0] * start.ny + cell[1];
-      heights[t] = local[2];
-      first[lines[t] + 1]++;
+  /** Goes to a moment: takes the triangles that are there. */
+  seek(moment) {
+    if (this.moment === moment) return;
+    this.moment = moment;
+    const { all, from, to } = this;
+    const corners = new Uint32Array(all.length);
+    let count = 0;
+    for (let t = 0; t < from.length; t++) {
+      if (from[t] > moment || moment >= to[t]) continue;
+      for (let k = 0; k < 3; k++) corners[count++] = all[3 * t + k];
     }
-    for (let n = 1; n < first.length; n++) first[n] += first[n - 1];
-    const own = new Uint32Array(first[first.length - 1]);
-    const next = first.slice();
-    for (let t = 0; t < this.count; t++) if (lines[t] >= 0) own[next[lines[t]]++] = t;
-    // At the end, all is seen.
-    const since = new Float32Array(this.count).fill(course.clocks.length);
-    const look = (line, moment, intervals) => {
-      for (let k = first[line]; k < first[line + 1]; k++) {
-        const t = own[k];
-        if (since[t] <= moment) continue;
-        let free = true;
-        for (let m = 0; m < intervals.length && free; m += STRIDE) free = heights[t] < start.height(intervals[m]) || heights[t] > start.height(intervals[m + 1]);
-        if (free) since[t] = moment;
-      }
-    };
-    lines.forEach((line, t) => line < 0 && (since[t] = 0));
-    course.seek(0);
-    course.lines.forEach((intervals, line) => look(line, 0, intervals));
-    for (let moment = 1; moment <= course.clocks.length; moment++) {
-      const changed = course.changed(moment);
-      course.seek(moment);
-      for (const line of changed) look(line, moment, course.lines[line]);
-    }
-    // A corner that is the last of several triangles shows the earliest.
-    this.since.fill(Infinity);
-    for (let t = 0; t < this.count; t++) {
-      const last = this.corners[3 * t + 2];
-      this.since[last] = Math.min(this.since[last], since[t]);
-    }
+    this.take(corners.slice(0, count));
+  }
+
+  take(corners) {
+    this.corners = corners;
+    this.count = corners.length / 3;
+    this.shape.triangles(corners);
+    /** What can be picked, made when it is needed. */
+    this.picked = null;
+  }
+
+  get solid() {
+    return (this.picked ??= new Solid(this.places, this.corners));
   }
 
   place(v) {
     return [this.places[3 * v], this.places[3 * v + 1], this.places[3 * v + 2]];
-  }
-
-  /** Whether a triangle is seen at a moment; −1 is the end. */
-  isSeen(triangle, moment) {
-    return moment < 0 || this.since[this.corners[3 * triangle + 2]] <= moment;
   }
 
   /** The corners of fewer triangles, to be drawn while the view moves: those that are left if corners of one cell and one side become one (Rossignac, Borrel 1993). */

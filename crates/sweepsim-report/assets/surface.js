@@ -195,11 +195,6 @@ function faces(layer, quads, corner, bent, x, y) {
     const run = [null, null];
     for (let j = 0; j < ny; j++) {
       const n = i * ny + j;
-      // What is drawn otherwise.
-      if (layer.settled?.[n]) {
-        run.fill(null);
-        continue;
-      }
       const single = first[n + 1] - first[n] === 1;
       for (let k = first[n]; k < first[n + 1]; k++)
         for (let side = 0; side < 2; side++) {
@@ -287,7 +282,6 @@ function walls(layer, quads, corner, x, y, z) {
   for (let i = 0; i < nx; i++)
     for (let j = 0; j < ny; j++)
       for (const { step, own, other } of SIDES) {
-        if (layer.settled?.[i * ny + j]) continue;
         const [u, v] = [i + step[0], j + step[1]];
         const within = u >= 0 && v >= 0 && u < nx && v < ny;
         const n = u * ny + v;

@@ -16,9 +16,11 @@ class Viewer {
     this.course = head.course ? new Course(head) : null;
     this.track = head.track ? new Track(head) : null;
     this.meshes = readMeshes(head);
-    this.sharp = head.surface ? new Sharp(head) : null;
-    this.shapes = { part: new Shape(gl), sharp: new Shape(gl), path: new Shape(gl), rapid: new Shape(gl) };
-    if (this.sharp) this.shapes.sharp.indexed(this.sharp.places, this.sharp.normals, this.sharp.corners);
+    /** The surfaces of the part and of the workpiece during the program, where they are known; elsewhere lines are drawn. */
+    this.sharp = head.surface ? new Sharp(head, "surface", new Shape(gl)) : null;
+    this.changing = head.surface_course ? new Sharp(head, "course", new Shape(gl)) : null;
+    this.clocks = (head.surface_course ?? head.course)?.clocks;
+    this.shapes = { part: new Shape(gl), path: new Shape(gl), rapid: new Shape(gl) };
     for (const [name, triangles] of Object.entries(this.meshes.solids)) this.addShape(name, triangles);
     this.tools = this.meshes.tools.map((tool) => [tool.cutter, tool.bodies].map((part) => {
       const shape = new Shape(gl);
@@ -82,7 +84,7 @@ class Viewer {
         const y = layer.min[1] + (i & 2 ? layer.ny * layer.spacing[1] : 0);
         take(transformed(this.frame, [x, y, layer.height(i & 4 ? top : bottom)]).slice(0, 3));
       }
-    for (const places of [this.meshes.solids.target.places, this.sharp?.places ?? []])
+    for (const places of [this.meshes.solids.target.places, this.sharp?.places ?? [], this.changing?.places ?? []])
       for (let k = 0; k < places.length; k += 3)
         for (let c = 0; c < 3; c++) [low[c], high[c]] = [Math.min(low[c], places[k + c]), Math.max(high[c], places[k + c])];
     return low[0] <= high[0] ? [low, high] : [[-1, -1, -1], [1, 1, 1]];
@@ -103,8 +105,8 @@ class Viewer {
 
   /** The number of moments that have passed, or −1 at the end. */
   get moment() {
-    if (!this.course || this.clock >= this.track.end) return -1;
-    return this.course.momentAt(this.clock);
+    if (!this.clocks || this.clock >= this.track.end) return -1;
+    return momentAt(this.clocks, this.clock);
   }
 
   /** The number of the set-up at this time. */
@@ -115,35 +117,32 @@ class Viewer {
     return Math.max(number, 0);
   }
 
-  /** The part as it is to be drawn now: its sharp surface as far as it is as at the end, the rest from lines. */
+  /** The surface that is drawn now; null if lines are. */
+  get surface() {
+    return this.moment < 0 ? this.sharp : this.changing;
+  }
+
+  /** The part as it is to be drawn now. */
   rebuild() {
-    const { moment, sharp, shapes, mode } = this;
+    const { moment, surface, shapes, mode } = this;
     if (this.rebuilt === `${moment} ${mode}`) return;
     this.rebuilt = `${moment} ${mode}`;
     const begin = performance.now();
     const colours = new Colours(this.head, mode);
-    colours.clocks = this.course?.clocks ?? [];
-    let layer = this.final;
-    if (moment >= 0) {
-      if (sharp && !this.followed) {
-        sharp.follow(this.course, this.frame);
-        shapes.sharp.attribute(4, sharp.since);
-        this.followed = true;
-      }
-      this.course.seek(moment);
-      layer = this.course.layer(this.final);
-      if (sharp) layer.settled = this.course.settled();
+    colours.clocks = this.clocks ?? [];
+    if (surface && moment >= 0) surface.seek(moment);
+    if (surface && surface.tinted !== mode) {
+      surface.tinted = mode;
+      surface.shape.put(2, surface.tints((made) => colours.ofMaker(made)));
+      if (mode === "deviation") surface.shape.shares(surface.shares(colours.limits));
     }
-    if (sharp && this.tinted !== mode) {
-      this.tinted = mode;
-      shapes.sharp.put(2, sharp.tints((made) => colours.ofMaker(made)));
-      if (mode === "deviation") shapes.sharp.attribute(3, sharp.shares(colours.limits));
-    }
-    const data = { moment, mode, triangles: sharp?.count ?? 0, quads: 0 };
-    this.layer = layer;
+    const data = { moment, mode, triangles: surface?.count ?? 0, quads: 0 };
     this.quads = null;
     delete this.solids.part;
-    if (!sharp || moment >= 0) {
+    if (!surface) {
+      if (moment >= 0) this.course.seek(moment);
+      const layer = moment < 0 ? this.final : this.course.layer(this.final);
+      this.layer = layer;
       const colour = colours.of(layer, this.track);
       layer.look = (end) => colour(end).reduce((all, c) => all * 256 + c, 0);
       this.quads = surfaceOf(layer);
@@ -169,8 +168,9 @@ class Viewer {
 
   /** Whether the surface is to be drawn by fewer triangles now. */
   get isCoarse() {
-    if (!this.moving || !this.slow || this.sharp.count < LARGE) return false;
-    if (!this.shapes.sharp.coarseCount) this.shapes.sharp.coarser(this.sharp.coarse());
+    const { surface } = this;
+    if (!this.moving || !this.slow || !(surface?.count >= LARGE)) return false;
+    if (!surface.shape.coarseCount) surface.shape.coarser(surface.coarse());
     return true;
   }
 
@@ -190,7 +190,7 @@ class Viewer {
   }
 
   draw() {
-    const { canvas, gpu, shapes, shown, camera, moment } = this;
+    const { canvas, gpu, shapes, shown, camera } = this;
     if (!canvas.clientWidth) return;
     this.rebuild();
     const ratio = Math.min(devicePixelRatio || 1, 2);
@@ -199,9 +199,9 @@ class Viewer {
     const view = product(camera.matrix(width / height), this.hold);
     this.view = view;
     gpu.begin(width, height, view, transformed(inverted(this.hold), camera.eye).slice(0, 3), this.section.plane);
-    const coarse = this.sharp !== null && this.isCoarse;
-    canvas.dataset.drawn = coarse ? shapes.sharp.coarseCount / 3 : this.sharp?.count ?? 0;
-    if (shown.part) this.drawPart(moment < 0 ? 1e9 : moment, coarse);
+    const { surface, isCoarse } = this;
+    canvas.dataset.drawn = isCoarse ? surface.shape.coarseCount / 3 : surface?.count ?? 0;
+    if (shown.part) this.drawPart(isCoarse);
     for (const name of this.fixtures()) gpu.draw(shapes[name], { colour: FIXTURE });
     canvas.dataset.setup = this.setup;
     if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
@@ -216,14 +216,13 @@ class Viewer {
     this.ondraw?.();
   }
 
-  drawPart(moment, coarse) {
-    const { gpu, shapes, sharp, frame: model, shown } = this;
+  drawPart(coarse) {
+    const { gpu, surface, shown } = this;
+    const shape = surface?.shape ?? this.shapes.part;
+    const model = surface ? IDENTITY : this.frame;
     const wires = { colour: WIRE, alpha: 0.18, unlit: true, wires: true };
-    if (this.quads) gpu.draw(shapes.part, { model, behind: sharp !== null || shown.mesh });
-    if (sharp) gpu.draw(shapes.sharp, { banded: this.mode === "deviation", moment, coarse, behind: shown.mesh });
-    if (!shown.mesh || coarse) return;
-    if (this.quads) gpu.draw(shapes.part, { model, ...wires });
-    if (sharp) gpu.draw(shapes.sharp, { moment, ...wires });
+    gpu.draw(shape, { model, banded: surface !== null && this.mode === "deviation", coarse, behind: shown.mesh });
+    if (shown.mesh && !coarse) gpu.draw(shape, { model, ...wires });
   }
 
   /** The fixtures that are shown now. */
@@ -284,36 +283,25 @@ class Viewer {
     return { origin, towards: sub(transformed(back, add(camera.eye, seen)).slice(0, 3), origin) };
   }
 
-  /** The solids that can be picked now, each with what tells whether a triangle of it is seen. */
+  /** The solids that can be picked now. */
   pickable() {
-    const { solids, moment } = this;
-    const [sharp, quads] = this.shown.part ? [this.sharp, this.quads] : [];
+    const { solids, surface, quads } = this;
     const all = [];
-    if (sharp) {
-      solids.sharp ??= new Solid(sharp.places, sharp.corners);
-      all.push([solids.sharp, (triangle) => sharp.isSeen(triangle, moment)]);
-    }
-    if (quads) {
-      solids.part ??= new Solid(quads.places, quads.corners(), this.frame);
-      all.push([solids.part, null]);
-    }
-    for (const name of this.fixtures()) {
-      solids[name] ??= new Solid(this.meshes.solids[name].places, null);
-      all.push([solids[name], null]);
-    }
+    if (this.shown.part) all.push(surface ? surface.solid : (solids.part ??= new Solid(quads.places, quads.corners(), this.frame)));
+    for (const name of this.fixtures()) all.push((solids[name] ??= new Solid(this.meshes.solids[name].places, null)));
     return all;
   }
 
   /** The first of what is seen that a ray meets between two distances. */
   cast(origin, towards, range) {
     let [best, end] = [null, range[1]];
-    for (const [solid, accept] of this.pickable()) {
-      const hit = solid.first(origin, towards, [range[0], end], accept);
+    for (const solid of this.pickable()) {
+      const hit = solid.first(origin, towards, [range[0], end]);
       if (hit) [best, end] = [hit, hit.far];
     }
     if (!best) return null;
     const place = add(origin, scaled(towards, best.far));
-    return { ...best, place, round: best.solid === this.solids.sharp ? this.sharp.rounded(best, place) : place };
+    return { ...best, place, round: best.solid === this.surface?.solid ? this.surface.rounded(best, place) : place };
   }
 
   /** What is under a pixel of the canvas: place, normal, and the triangle, or null for the face of a section. */
@@ -357,9 +345,9 @@ class Viewer {
   /** What is known of the surface where it was picked: the deviation, and 0 for the stock or 1 plus the number of the move; each null if it is not known. */
   about(hit) {
     const { solid, triangle, u, v } = hit;
-    const { sharp, solids, quads, layer } = this;
+    const { surface, solids, quads, layer } = this;
     if (triangle === null) return null;
-    if (solid === solids.sharp) return { maker: sharp.maker(triangle), deviation: sharp.deviation(triangle, u, v) };
+    if (solid === surface?.solid) return { maker: surface.maker(triangle), deviation: surface.deviation(triangle, u, v) };
     if (solid !== solids.part) return null;
     const end = this.endAt(hit) ?? quads.ends[triangle >> 1];
     if (end < 0) return { maker: end === -1 ? 0 : null, deviation: null };

@@ -46,7 +46,7 @@ pub use page::{Page, Picture, Verdict, VerdictState};
 pub use plots::{Bar, Histogram, Plot};
 pub use scene::{
     Area, Course, DexelLayer, JOINTS, KeyFrame, LayerEnd, Machine, MachineJoint, MachinePoint, ProgramText, Scene,
-    Solid, SolidKind, Surface, ToolPart, ToolShape, Track, TrackPoint,
+    Solid, SolidKind, Surface, SurfaceCourse, ToolPart, ToolShape, Track, TrackPoint,
 };
 pub use tables::{Fact, Table};
 

@@ -149,7 +149,7 @@ impl KeyFrame {
     }
 }
 
-/// The workpiece during the program.
+/// The workpiece during the program, on lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// The stock before the first move.
@@ -176,6 +176,17 @@ pub struct Surface {
     pub whole: usize,
     /// How far corners of the whole surface are from these triangles at most.
     pub farthest: f64,
+}
+
+/// The workpiece during the program as triangles, sharp at edges. Moment 0 is the start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceCourse {
+    /// The times of the moments from 1 on the program's clock.
+    pub clocks: Vec<f64>,
+    /// The triangles of all moments.
+    pub surface: Surface,
+    /// Of each triangle, the moment from which it is there, and that from which it is not.
+    pub spans: Vec<[u16; 2]>,
 }
 
 /// Where the tool is at a time.
@@ -324,6 +335,8 @@ pub struct Scene {
     pub limits: Option<[f64; 2]>,
     /// The workpiece during the program. Its lines are in the same frame as those of the part.
     pub course: Option<Course>,
+    /// The workpiece during the program, where more is known of it than lines tell: in place of the course on lines.
+    pub surface_course: Option<SurfaceCourse>,
     /// The way of the tools.
     pub track: Option<Track>,
     /// The tools.
@@ -350,6 +363,7 @@ impl Scene {
             frame: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             limits: None,
             course: None,
+            surface_course: None,
             track: None,
             tools: Vec::new(),
             paths: Vec::new(),

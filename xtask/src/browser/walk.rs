@@ -148,12 +148,12 @@ fn mouse(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
     expect(moment != at_end, "a finding does not go to its time")?;
     save(browser, docs, "report.png")?;
     // The slider changes the workpiece.
-    let quads = |browser: &mut Browser| browser.value("document.getElementById('canvas').dataset.quads");
+    let triangles = |browser: &mut Browser| browser.value("document.getElementById('canvas').dataset.triangles");
     let mut seen = Vec::new();
     for value in ["0", "3000", "5000", "10000"] {
         choose(browser, "#moment", value)?;
         let now = pixels(browser)?[1].clone();
-        seen.push((quads(browser)?, now));
+        seen.push((triangles(browser)?, now));
     }
     let all_differ = |list: &[Value]| (1..list.len()).all(|n| !list[..n].contains(&list[n]));
     let (counts, hashes): (Vec<Value>, Vec<Value>) = seen.into_iter().unzip();

@@ -1,7 +1,7 @@
 //! What the page tells of a part whose faults are known: a slot whose walls are 0.2 mm off on a stretch, and a hole.
 
 use super::devtools::Browser;
-use super::walk::{choose, click, expect, middle, pixels, quiet, save};
+use super::walk::{camera, choose, click, expect, middle, pixels, quiet, save};
 use serde_json::json;
 use std::path::Path;
 
@@ -235,7 +235,8 @@ fn section(browser: &mut Browser, docs: Option<&Path>) -> Result<(), String> {
     choose(browser, "#section", "")
 }
 
-/// During the program: walls that are done are sharp, the rest is of lines, and deviations are known.
+/// During the program: walls are where they belong, also those that the next moment takes away, and deviations are
+/// known.
 pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
     let report = &report.with_file_name("walls").join("report.html");
     browser.open(report)?;
@@ -245,13 +246,26 @@ pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<
     let drawn = browser.value(
         "[document.getElementById('canvas').dataset.triangles, document.getElementById('canvas').dataset.quads]",
     )?;
-    let quads = drawn[1]
-        .as_str()
-        .and_then(|n| n.parse::<u32>().ok())
-        .unwrap_or_default();
-    expect(quads > 100, &format!("the stock is not drawn by lines: {drawn}"))?;
-    // Without the tool, from above.
+    let triangles = drawn[0].as_str().and_then(|n| n.parse::<u32>().ok());
+    expect(
+        triangles > Some(1000) && drawn[1] == "0",
+        &format!("triangles and quads of the workpiece: {drawn}"),
+    )?;
+    // Without the tool, from the slot's open side: the wall at its end is as round as the tool of 6 mm.
     click(browser, "[data-show='tool']")?;
+    choose(browser, "#view", "left")?;
+    camera(browser)?;
+    click(browser, "#measure")?;
+    choose(browser, "#measure-kind", "diameter")?;
+    let end = picked(browser, &[[12.0, -2.1, -1.2], [12.0, 0.4, -2.9], [12.0, 2.3, -2.2]])?;
+    expect(
+        end.starts_with('⌀') && is_near(&end, 6.0, 0.03),
+        &format!("the end of the slot measures {end}"),
+    )?;
+    click(browser, "#measure")?;
+    click(browser, "#home")?;
+    camera(browser)?;
+    // From above.
     let [x, y] = middle(browser, "#canvas")?;
     browser.drag(&[[x, y], [x, y + 45.0], [x, y + 90.0]])?;
     pixels(browser)?;
@@ -268,7 +282,7 @@ pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<
         &format!("the stock above the slot says {left:?}"),
     )?;
     quiet(browser)?;
-    Ok(format!("{quads} quads beside the surface; {done}; {left}"))
+    Ok(format!("{end}; {done}; {left}"))
 }
 
 /// 300,000 triangles, and three million made into as many: how long each takes to open, and to turn.

@@ -62,3 +62,55 @@ fn every_run_has_its_page() {
     let swept = page("sweep", 0, &[]);
     assert!(swept.contains("The swept volume") && swept.contains("\"course\":null"));
 }
+
+/// A facing tool goes straight down, so that every moment changes all of the surface.
+const PLUNGE: &str = "G21 G90 G17
+T1 M6
+S8000 M3
+G0 X0 Y0 Z10
+G0 Z0.5
+G1 Z-12 F100
+G0 Z10
+M30
+";
+
+const PLATE: &str = "Job(
+    grid: Grid(min: (-20, -20), max: (20, 20), cells: (90, 90)),
+    stock: Block(min: (-20, -20, -13), max: (20, 20, 0)),
+    tools: { 1: Flat(radius: 18, length: 30) },
+    paths: [Path(file: \"part.nc\")],
+)";
+
+/// Where there are dexels along three axes, the workpiece is shown by its surface at all moments; on lines as close as
+/// those of the job, or farther apart if that needs too many triangles, which is said.
+#[test]
+fn the_surface_of_all_moments_has_a_limit() {
+    let folder = Workdir::new(PLATE);
+    fs::write(folder.path("part.nc"), PLUNGE).unwrap();
+    let page = |moments: &str| {
+        let options = [
+            "--only",
+            "report",
+            "--no-proof",
+            "--directions",
+            "xyz",
+            "--moments",
+            moments,
+        ];
+        folder.run_job("verify", &options);
+        fs::read_to_string(folder.path("out/report.html")).unwrap()
+    };
+    let triangles = |html: &str| {
+        let (_, rest) = html
+            .split_once("{\"name\":\"course.from\",\"kind\":\"U16\",\"count\":")
+            .unwrap();
+        rest.split(',').next().unwrap().parse::<u32>().unwrap()
+    };
+    let farther = "the workpiece during the program is that on lines ";
+    let few = page("10");
+    assert!(few.contains("\"course\":null") && !few.contains(farther));
+    assert!(triangles(&few) > 100_000);
+    let many = page("100");
+    assert!(many.contains(farther));
+    assert!((100_000..=600_000).contains(&triangles(&many)), "{}", triangles(&many));
+}

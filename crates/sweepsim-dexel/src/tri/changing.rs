@@ -63,7 +63,7 @@ impl TimedMesh {
 /// let mut drilled = block.clone();
 /// drilled.combine(Operation::Difference, &solid(Stock::Ball { centre: [0.0, 0.0, 4.0], radius: 2.0 })?)?;
 /// let surface = drilled.surface()?;
-/// let mut changing = ChangingSurface::new(block, 0.8)?;
+/// let mut changing = ChangingSurface::new(block, 0.8, 0.0)?;
 /// assert!(!changing.advance(changing.solid().clone())?);
 /// assert!(changing.advance(drilled)?);
 /// let mesh = changing.finish();
@@ -75,15 +75,16 @@ impl TimedMesh {
 pub struct ChangingSurface {
     solid: TriDexels,
     cosine: f64,
+    tolerance: f64,
     moment: u32,
     mesh: TimedMesh,
     /// What is there at the present moment, by the edge of the lattice.
     faces: FxHashMap<LatticeEdge, Face>,
-    /// The numbers of corners, by place and nearly equal normal.
-    corners: Corners,
+    /// The numbers of corners, by nearly equal place and normal.
+    corners: Numbers,
 }
 
-type Corners = FxHashMap<([u64; 3], [i8; 3]), u32>;
+type Numbers = FxHashMap<([i64; 3], [i8; 3]), u32>;
 
 /// The triangles around the edge of an interval.
 #[derive(Clone, Debug)]
@@ -101,14 +102,17 @@ const AROUND: usize = 2;
 
 impl ChangingSurface {
     /// The surface at the first moment. Edges sharper than this cosine of the angle between normals are drawn sharp.
+    /// What moves by no more than a tolerance stays as it is: a tool that passes a surface again moves it by rounding
+    /// errors. With a tolerance of 0, the surface at each moment is that of the tri-dexels.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
-    pub fn new(solid: TriDexels, cosine: f64) -> Result<Self, MeshError> {
+    pub fn new(solid: TriDexels, cosine: f64, tolerance: f64) -> Result<Self, MeshError> {
         let last = solid.cells().map(|n| n + 1);
         let mut made = Self {
             solid,
             cosine,
+            tolerance,
             moment: 0,
             mesh: TimedMesh::default(),
             faces: FxHashMap::default(),
@@ -135,7 +139,7 @@ impl ChangingSurface {
     /// # Errors
     /// [`MeshError::TooManyVertices`]
     pub fn advance(&mut self, solid: TriDexels) -> Result<bool, MeshError> {
-        let changed = changed(&self.solid, &solid);
+        let changed = changed(&self.solid, &solid, self.tolerance);
         self.solid = solid;
         let Some([low, high]) = changed else { return Ok(false) };
         self.moment += 1;
@@ -170,17 +174,21 @@ impl ChangingSurface {
             if !is_in(edge.1) {
                 continue;
             }
+            let (numbers, all, tolerance) = (&mut self.corners, &mut self.mesh, self.tolerance);
             let corners = triangles
                 .iter()
-                .map(|own| own.map(|v| number_of(&mut self.corners, &mut self.mesh, &mesh, v as usize)));
+                .map(|own| own.map(|v| number_of(numbers, all, (&mesh, v as usize), tolerance)));
             let corners: SmallVec<[[u32; 3]; 2]> = corners.collect();
             let before = gone.get(&edge);
-            if before.is_some_and(|face| face.corners == corners) {
+            // On flat faces, rounding errors choose the diagonal.
+            let stays =
+                |face: &Face| face.corners == corners || tolerance > 0.0 && sorted(&face.corners) == sorted(&corners);
+            if before.is_some_and(stays) {
                 self.faces.extend(gone.remove_entry(&edge));
                 continue;
             }
             let place = lattice.surface_end(axis, at).place;
-            let same = before.filter(|face| face.place == place);
+            let same = before.filter(|face| (0..3).all(|c| (face.place[c] - place[c]).abs() <= tolerance));
             let made = same.map_or(self.moment, |face| face.made);
             let face = Face {
                 first: self.mesh.triangles.len(),
@@ -210,15 +218,30 @@ impl ChangingSurface {
     }
 }
 
-/// The number of a corner as one of a mesh.
-fn number_of(corners: &mut Corners, all: &mut TimedMesh, mesh: &Mesh, v: usize) -> u32 {
+/// The number of a corner that is as one of a mesh.
+fn number_of(numbers: &mut Numbers, all: &mut TimedMesh, (mesh, v): (&Mesh, usize), tolerance: f64) -> u32 {
     let (place, normal) = (mesh.vertices[v], mesh.normals[v]);
-    let key = (place.map(f64::to_bits), normal.map(|c| (64.0 * c).round() as i8));
-    *corners.entry(key).or_insert_with(|| {
+    let rounded = |c: f64| {
+        if tolerance > 0.0 {
+            (c / tolerance).round() as i64
+        } else {
+            c.to_bits() as i64
+        }
+    };
+    let key = (place.map(rounded), normal.map(|c| (64.0 * c).round() as i8));
+    *numbers.entry(key).or_insert_with(|| {
         all.vertices.push(place);
         all.normals.push(normal);
         all.vertices.len() as u32 - 1
     })
+}
+
+/// All corners of some triangles.
+fn sorted(triangles: &[[u32; 3]]) -> SmallVec<[u32; 6]> {
+    let mut all: SmallVec<[u32; 6]> = triangles.iter().flatten().copied().collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 fn end_at(mesh: &mut TimedMesh, face: &Face, moment: u32) {
@@ -230,13 +253,14 @@ fn end_at(mesh: &mut TimedMesh, face: &Face, moment: u32) {
 /// How far from an end, in steps, the surface may depend on it: more than by how much ends count as on an edge.
 const SLACK: f64 = 0.01;
 
-/// The first and the last point of the lattice of a box around all edges on which two states differ.
-fn changed(before: &TriDexels, after: &TriDexels) -> Option<[[usize; 3]; 2]> {
+/// The first and the last point of the lattice of a box around all edges on which two states differ by more than a
+/// tolerance.
+fn changed(before: &TriDexels, after: &TriDexels, tolerance: f64) -> Option<[[usize; 3]; 2]> {
     let (min, step) = (after.min(), after.spacing());
     let along = |axis: usize| {
         let [old, new] = [before, after].map(|solid| &solid.sets()[axis]);
         (0..new.grid().len()).into_par_iter().filter_map(move |line| {
-            let heights = differing(old.at(line), new.at(line))?;
+            let heights = differing(old.at(line), new.at(line), tolerance)?;
             let [low, high] = heights.map(|height| (height - min[axis]) / step[axis] + 0.5);
             let (i, j) = new.grid().place(line);
             let mut points = [[0; 3]; 2];
@@ -254,17 +278,16 @@ fn changed(before: &TriDexels, after: &TriDexels) -> Option<[[usize; 3]; 2]> {
 }
 
 /// The lowest and the highest end that only one of two lines has.
-fn differing(before: Line, after: Line) -> Option<[f64; 2]> {
-    if before.heights().eq(after.heights()) {
-        return None;
-    }
+fn differing(before: Line, after: Line, tolerance: f64) -> Option<[f64; 2]> {
     let ends = |line: Line| -> SmallVec<[f64; 8]> { line.heights().flatten().collect() };
     let (before, after) = (ends(before), ends(after));
-    let same = before.iter().zip(&after).take_while(|(a, b)| a == b).count();
+    let is_same = |(a, b): &(&f64, &f64)| (*a - *b).abs() <= tolerance;
+    let same = before.iter().zip(&after).take_while(is_same).count();
     let (before, after) = (&before[same..], &after[same..]);
     let both = before.iter().rev().zip(after.iter().rev());
-    let same = both.take_while(|(a, b)| a == b).count();
+    let same = both.take_while(is_same).count();
     let rest = [before, after].map(|ends| &ends[..ends.len() - same]);
-    let heights = rest.into_iter().flatten().copied();
-    Some(heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)]))
+    let mut heights = rest.into_iter().flatten().copied();
+    let first = heights.next()?;
+    Some(heights.fold([first; 2], |[a, b], z| [a.min(z), b.max(z)]))
 }

@@ -4,6 +4,7 @@ mod axes;
 mod course;
 mod deviation;
 mod machine;
+mod moments;
 mod program;
 mod proofs;
 mod solids;
@@ -174,7 +175,8 @@ fn scene(
     }
     scene.programs = programs.into_texts();
     scene.track = Some(made.track);
-    scene.course = made.course;
+    scene.course = made.moments.lines;
+    scene.surface_course = made.moments.surface;
     scene
 }
 
@@ -264,7 +266,7 @@ fn facts(source: &PageSource) -> Vec<Fact> {
 fn plots(source: &PageSource, made: &Courses) -> Vec<Plot> {
     let mut plots = Vec::new();
     let timed = made.track.unit == "s";
-    if !made.removal.is_empty() {
+    if !made.moments.removal.is_empty() {
         // mm³/s as cm³/min.
         let (name, unit, factor) = if timed {
             ("Removal rate", "cm³/min", 0.06)
@@ -275,6 +277,7 @@ fn plots(source: &PageSource, made: &Courses) -> Vec<Plot> {
             name: name.to_owned(),
             unit: unit.to_owned(),
             steps: made
+                .moments
                 .removal
                 .iter()
                 .map(|[from, to, rate]| [*from, *to, factor * rate])

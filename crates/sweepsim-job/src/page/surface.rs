@@ -15,16 +15,7 @@ pub(super) fn surface(solid: &TriDexels, mesh: &Mesh, target: Option<&Target>, f
     let clustered = mesh.clustered(MOST);
     let farthest = clustered.farthest(mesh).unwrap_or(clustered.within);
     let shown = clustered.mesh;
-    let distance = |target: &Target| {
-        let near = |p: &[f64; 3]| {
-            target
-                .distance()
-                .nearest(*p)
-                .map_or(f32::NAN, |near| near.distance as f32)
-        };
-        shown.vertices.par_iter().map(near).collect()
-    };
-    let deviations = target.map_or_else(Vec::new, distance);
+    let deviations = target.map_or_else(Vec::new, |target| distances(target, &shown.vertices));
     let sources = solid.sources(&middles(&shown));
     let makers = sources
         .into_iter()
@@ -39,6 +30,15 @@ pub(super) fn surface(solid: &TriDexels, mesh: &Mesh, target: Option<&Target>, f
         normals: shown.normals,
         triangles: shown.triangles,
     }
+}
+
+/// The signed distances of places from the target along its normal; NaN where there is none.
+pub(super) fn distances(target: &Target, places: &[[f64; 3]]) -> Vec<f32> {
+    let near = |p: &[f64; 3]| {
+        let near = target.distance().nearest(*p);
+        near.map_or(f32::NAN, |near| near.distance as f32)
+    };
+    places.par_iter().map(near).collect()
 }
 
 /// The middles of all triangles as vertices; each counts as cut if all corners do.

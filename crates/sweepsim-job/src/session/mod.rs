@@ -7,8 +7,8 @@ pub(crate) use plan::Pieces;
 pub use plan::{Guess, Plan};
 pub(crate) use sweepsim::solve::CancelOnly;
 pub(crate) use three_axes::{
-    TriSolid, check, coarse_grids_aside, grids_aside, heights, joined, lattice, solid, stock, stock_heights, surface,
-    too_many,
+    TriSolid, check, coarse_grids_aside, grids_aside, heights, joined, lattice, solid, stock, stock_heights, stock_on,
+    surface, too_many,
 };
 
 use crate::base::JobError;

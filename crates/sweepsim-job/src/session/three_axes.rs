@@ -163,6 +163,18 @@ pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
     Ok(vec![along_x, along_y])
 }
 
+/// The stock of a job along three axes, with this grid along z; with its own, if it goes on with the result of an
+/// earlier run. Nothing if it is empty, or cannot be made.
+pub(crate) fn stock_on(job: &Job, grid: &Grid) -> Option<TriDexels> {
+    let range = stock_heights(job)?;
+    let (min, max, cells) = if earlier(&job.stock).is_empty() {
+        lattice(grid, range)
+    } else {
+        lattice_of(job, range)
+    };
+    TriDexels::new(min, max, cells, &job.stock).ok()
+}
+
 /// The stock of a job: along z, or along x, y and z as its surfaces are made.
 pub(crate) fn stock(session: Session) -> Result<Vec<Dexels>, JobError> {
     let job = session.job;

@@ -4,8 +4,8 @@ use super::arrays::{Entry, Packed, Scale};
 use super::layers::{self, CourseHead, HEIGHTS, LayerHead};
 use super::machine::{self, MachineHead};
 use super::others::{self, MeshHead, TrackHead};
-use super::surface::{self, SurfaceHead};
-use crate::scene::{DexelLayer, KeyFrame, Scene};
+use super::surface::{self, SurfaceCourseHead, SurfaceHead};
+use crate::scene::{DexelLayer, KeyFrame, Scene, SurfaceCourse};
 use serde::Serialize;
 
 /// The description of the embedded arrays.
@@ -20,6 +20,7 @@ pub(crate) struct Head {
     part: LayerHead,
     surface: Option<SurfaceHead>,
     course: Option<CourseHead>,
+    surface_course: Option<SurfaceCourseHead>,
     track: Option<TrackHead>,
     meshes: MeshHead,
     machine: Option<MachineHead>,
@@ -122,35 +123,31 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         (kept, names) = (Packed::default(), Vec::new());
     }
     // As many moments of the course as fit.
+    let moments_fit = |own: &Packed| fits(&[&fixed, &part.arrays, &normals, &kept, own]);
+    let mut of_moments = Packed::default();
     let mut shown = None;
-    if let Some(course) = course {
-        let mut frames: Vec<KeyFrame> = course.frames.clone();
-        loop {
-            let (head, arrays) = layers::course(course, &frames, &height, deviation);
-            let arrays = arrays.packed();
-            if fits(&[&fixed, &part.arrays, &normals, &kept, &arrays]) {
-                shown = Some((head, arrays));
-                break;
-            }
-            if frames.len() <= 1 {
-                break;
-            }
-            frames = layers::thinned(&frames);
-        }
-        if shown.is_none() {
-            left_out.push("the workpiece during the program".to_owned());
-        } else if frames.len() < course.frames.len() {
-            left_out.push(format!("all but {} of {} moments", frames.len(), course.frames.len()));
-        }
+    if let Some(course) = course.filter(|_| scene.surface_course.is_none()) {
+        let packed = |frames: &Vec<KeyFrame>| {
+            let (head, arrays) = layers::course(course, frames, &height, deviation);
+            (head, arrays.packed(), frames.len())
+        };
+        let thinned = |frames: &Vec<KeyFrame>| layers::thinned(frames);
+        (shown, of_moments) = moments(course.frames.clone(), packed, thinned, moments_fit, &mut left_out);
+    }
+    let mut sharp_moments = None;
+    // One of a surface takes the place of one on lines.
+    if let Some(course) = &scene.surface_course {
+        let packed = |course: &SurfaceCourse| {
+            let (head, arrays) = surface::course(course, deviation);
+            (head, arrays.packed(), course.clocks.len())
+        };
+        (sharp_moments, of_moments) = moments(course.clone(), packed, surface::thinned, moments_fit, &mut left_out);
     }
     let mut all = part.arrays;
     all.append(&normals);
     all.append(&fixed);
     all.append(&kept);
-    let course = shown.map(|(head, arrays)| {
-        all.append(&arrays);
-        head
-    });
+    all.append(&of_moments);
     let head = Head {
         height,
         deviation,
@@ -158,7 +155,8 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         frame: scene.frame,
         part: part.head,
         surface: sharp,
-        course,
+        course: shown,
+        surface_course: sharp_moments,
         track,
         meshes,
         machine,
@@ -174,6 +172,30 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         step: height.step,
         left_out,
     }
+}
+
+/// As many moments of a course as fit, each time every second one; and what is said of those that are left out.
+fn moments<C, H>(
+    all: C,
+    packed: impl Fn(&C) -> (H, Packed, usize),
+    thinned: impl Fn(&C) -> C,
+    fits: impl Fn(&Packed) -> bool,
+    left_out: &mut Vec<String>,
+) -> (Option<H>, Packed) {
+    let (mut head, mut arrays, whole) = packed(&all);
+    let (mut thin, mut count) = (all, whole);
+    while !fits(&arrays) {
+        if count <= 1 {
+            left_out.push("the workpiece during the program".to_owned());
+            return (None, Packed::default());
+        }
+        thin = thinned(&thin);
+        (head, arrays, count) = packed(&thin);
+    }
+    if count < whole {
+        left_out.push(format!("all but {count} of {whole} moments"));
+    }
+    (Some(head), arrays)
 }
 
 /// The part without its normals.

@@ -2,6 +2,7 @@
 //! not be in them.
 
 mod decoder;
+mod moments;
 mod page;
 mod scene;
 mod waves;
