@@ -2,8 +2,8 @@
 //! plain HTML, and a viewer of the part and of the program's course in WebGL.
 //!
 //! This crate knows no sweep. A [`Page`] is filled with plain data (words, tables, [plots](Plot), [findings](Finding));
-//! its [`Scene`] holds the part as [intervals on lines](DexelLayer), [tools](ToolShape), [solids](Solid) and the
-//! [course](Course) of the program. [`Page::html`] returns the file.
+//! its [`Scene`] holds the part as [intervals on lines](DexelLayer), [tools](ToolShape), [solids](Solid) and the course
+//! of the program, on [lines](Course) or as a [surface](SurfaceCourse). [`Page::html`] returns the file.
 //!
 //! ```
 //! use sweepsim_report::{Area, DexelLayer, LayerEnd, Page, Scene, Verdict};
@@ -23,7 +23,7 @@
 //!
 //! Heights are quantised to 16 bits within the extent of the scene (the page states the step), predicted by their
 //! neighbours, and compressed. A page never exceeds [`Page::most_bytes`]: if it would, normals are left out first, then
-//! moments of the course, then every second line, and the page says so.
+//! every second line, the surface, the programs' texts, and every second moment of the course, and the page says so.
 //!
 //! # Layout
 //!

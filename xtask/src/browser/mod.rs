@@ -74,12 +74,13 @@ fn sweepsim() -> Command {
 }
 
 /// The report of a faulty job, in a folder.
-fn verified(job: &Path, folder: &Path) -> Result<PathBuf, String> {
+fn verified(job: &Path, folder: &Path, options: &[&str]) -> Result<PathBuf, String> {
     let status = sweepsim()
         .arg("verify")
         .arg(job)
         .args(["--quiet", "--only", "report,picture", "--size", "900x600", "--out"])
         .arg(folder)
+        .args(options)
         .status()
         .map_err(|error| format!("sweepsim: {error}"))?;
     if status.code() != Some(1) {
@@ -93,10 +94,10 @@ fn verified(job: &Path, folder: &Path) -> Result<PathBuf, String> {
 
 /// The report of the faulty bracket.
 fn report(folder: &Path) -> Result<PathBuf, String> {
-    verified(&workspace::fixtures().join("verify/bracket-faulty.ron"), folder)
+    verified(&workspace::fixtures().join("verify/bracket-faulty.ron"), folder, &[])
 }
 
-/// The report of a part with known faults.
+/// The report of a part with known faults; and another on lines along z alone.
 fn planted(folder: &Path) -> Result<PathBuf, String> {
     let folder = folder.join("walls");
     let write = |name: &str, text: &str| {
@@ -107,5 +108,7 @@ fn planted(folder: &Path) -> Result<PathBuf, String> {
     write("walls.nc", walls::PROGRAM)?;
     write("walls.stl", &walls::target())?;
     write("walls.ron", walls::JOB)?;
-    verified(&folder.join("walls.ron"), &folder)
+    let job = folder.join("walls.ron");
+    verified(&job, &folder.join("lines"), &["--directions", "z"])?;
+    verified(&job, &folder, &[])
 }

@@ -282,7 +282,23 @@ pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<
         &format!("the stock above the slot says {left:?}"),
     )?;
     quiet(browser)?;
-    Ok(format!("{end}; {done}; {left}"))
+    // Without dexels along three axes, by lines.
+    browser.open(&report.with_file_name("lines").join("report.html"))?;
+    pixels(browser)?;
+    choose(browser, "#moment", "3500")?;
+    pixels(browser)?;
+    let quads = browser.value("Number(document.getElementById('canvas').dataset.quads)")?;
+    expect(
+        quads.as_f64() > Some(100.0),
+        &format!("the stock is drawn by {quads} quads of lines"),
+    )?;
+    let stock = hovered(browser, [17.0, -10.0, 0.0])?;
+    expect(
+        stock.starts_with("deviation") && is_near(&stock, 0.0, 0.002),
+        &format!("the stock that stays says {stock:?}"),
+    )?;
+    quiet_twice(browser)?;
+    Ok(format!("{end}; {done}; {left}; {quads} quads of lines"))
 }
 
 /// 300,000 triangles, and three million made into as many: how long each takes to open, and to turn.

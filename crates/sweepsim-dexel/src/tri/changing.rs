@@ -26,7 +26,7 @@ pub struct TimedMesh {
 }
 
 impl TimedMesh {
-    /// The volume inside of the surface at each moment.
+    /// The volume inside of the surface at each moment, up to the last at which there is any.
     #[must_use]
     pub fn volumes(&self) -> Vec<f64> {
         // What each moment adds to that of the one before, and after the last.
@@ -97,7 +97,7 @@ struct Face {
     made: u32,
 }
 
-/// So many points around edges that may have changed, cells and corners depend on.
+/// The corners of edges that may have changed, and their normals, depend on so many points around them.
 const AROUND: usize = 2;
 
 impl ChangingSurface {
@@ -134,7 +134,8 @@ impl ChangingSurface {
         self.mesh.triangles.len()
     }
 
-    /// Goes to the next moment, unless nothing changed: whether something did. The box and the cells stay the same.
+    /// Goes to the next moment, unless nothing changed: whether something did. In another box, or with other cells, all
+    /// is made anew.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -257,6 +258,10 @@ const SLACK: f64 = 0.01;
 /// tolerance.
 fn changed(before: &TriDexels, after: &TriDexels, tolerance: f64) -> Option<[[usize; 3]; 2]> {
     let (min, step) = (after.min(), after.spacing());
+    let bounds = |solid: &TriDexels| (solid.min(), solid.max(), solid.cells());
+    if bounds(before) != bounds(after) {
+        return Some([[0; 3], [0, 1, 2].map(|c| before.cells()[c].max(after.cells()[c]))]);
+    }
     let along = |axis: usize| {
         let [old, new] = [before, after].map(|solid| &solid.sets()[axis]);
         (0..new.grid().len()).into_par_iter().filter_map(move |line| {

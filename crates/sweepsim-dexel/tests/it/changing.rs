@@ -47,7 +47,7 @@ proptest! {
             }
         }
         let mesh = changing.finish();
-        prop_assert_eq!(mesh.spans.iter().map(|[_, to]| *to).max(), Some(states.len() as u32));
+        prop_assert!(mesh.spans.iter().all(|[from, to]| from < to && *to as usize <= states.len()));
         for (moment, state) in states.iter().enumerate() {
             let surface = state.surface().unwrap();
             let whole = sorted(&surface.vertices, surface.triangles.iter().copied());
@@ -108,4 +108,35 @@ fn walls_of_a_slot_are_straight_half_way() {
     );
     let made = |moment: u32| mesh.made.iter().filter(|own| **own == moment).count();
     assert!(made(0) > 1000 && (1..=8).all(|moment| made(moment) > 20));
+}
+
+/// Where all material goes, so does the surface; in another box, all of it is another.
+#[test]
+fn all_of_a_surface_may_go() {
+    let block = solid(&Stock::Block {
+        min: [-9.0; 3],
+        max: [9.0; 3],
+    });
+    let empty = TriDexels::empty(block.min(), block.max(), block.cells()).unwrap();
+    let other = TriDexels::new(
+        [-3.0; 3],
+        [3.0; 3],
+        [5; 3],
+        &Stock::Ball {
+            centre: [0.0; 3],
+            radius: 2.0,
+        },
+    )
+    .unwrap();
+    let surface = other.surface().unwrap();
+    let mut changing = ChangingSurface::new(block, 0.8, 0.0).unwrap();
+    for next in [empty.clone(), other, empty] {
+        assert!(changing.advance(next).unwrap());
+    }
+    let mesh = changing.finish();
+    let counts = [0, 1, 2, 3].map(|moment| mesh.at(moment).count());
+    assert!(counts[0] > 1000 && counts[1] == 0 && counts[3] == 0, "{counts:?}");
+    let whole = sorted(&surface.vertices, surface.triangles.iter().copied());
+    assert!(whole == sorted(&mesh.vertices, mesh.at(2)));
+    assert_eq!(mesh.volumes().len(), 3);
 }

@@ -100,6 +100,8 @@ fn surfaces(
         };
         // A stock of dexels keeps its lines.
         if before.replace(solid.cells()) == Some(solid.cells()) {
+            let why = "the workpiece during the program is that on lines along z: its surface has too many triangles";
+            notes.push(why.to_owned());
             return Ok(None);
         }
         let [step, ..] = solid.spacing();
@@ -116,12 +118,10 @@ fn surfaces(
                 clocks.push(clock);
             }
             steps.push(([since, clock], [before, clocks.len()]));
-            let fits = changing.triangles() <= 2 * MOST;
-            Ok(if fits {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            })
+            if changing.triangles() > 2 * MOST {
+                return Ok(ControlFlow::Break(()));
+            }
+            Ok(ControlFlow::Continue(()))
         };
         if followed(source, count, track, sets, &mut show)?.is_break() {
             times *= COARSER;
@@ -135,7 +135,8 @@ fn surfaces(
         }
         let mesh = changing.finish();
         let volumes = mesh.volumes();
-        let removed = |([from, to], [a, b]): ([f64; 2], [usize; 2])| rate([from, to, volumes[a] - volumes[b]]);
+        let volume = |moment: usize| volumes.get(moment).copied().unwrap_or(0.0);
+        let removed = |([from, to], [a, b]): ([f64; 2], [usize; 2])| rate([from, to, volume(a) - volume(b)]);
         return Ok(Some(Moments {
             lines: None,
             removal: steps.into_iter().map(removed).collect(),
@@ -153,7 +154,11 @@ fn measured(mesh: TimedMesh, clocks: Vec<f64>, target: Option<&Target>, track: &
         Some(track.points.get(point)?.number + 1)
     };
     SurfaceCourse {
-        spans: mesh.spans.iter().map(|span| span.map(|moment| moment as u16)).collect(),
+        spans: mesh
+            .spans
+            .iter()
+            .map(|span| span.map(|moment| u16::try_from(moment).unwrap_or(u16::MAX)))
+            .collect(),
         surface: Surface {
             deviations: target.map_or_else(Vec::new, |target| distances(target, &mesh.vertices)),
             makers: mesh.made.iter().map(|made| maker(made).unwrap_or(0)).collect(),
@@ -166,8 +171,8 @@ fn measured(mesh: TimedMesh, clocks: Vec<f64>, target: Option<&Target>, track: &
     }
 }
 
-/// A grid along z such that all lines along three axes, over these heights, are no more than [`LINES_OF_SURFACE`], and so many
-/// times farther apart.
+/// A grid along z such that all lines along three axes, over these heights, are no more than [`LINES_OF_SURFACE`]; and
+/// so many times coarser.
 fn coarse(grid: &Grid, [low, high]: [f64; 2], times: f64) -> Option<Grid> {
     let [nx, ny] = grid.cells().map(|n| n as f64);
     let [dx, dy] = grid.spacing();
