@@ -259,12 +259,16 @@ pub fn course(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<
     choose(browser, "#measure-kind", "diameter")?;
     let end = picked(browser, &[[12.0, -2.1, -1.2], [12.0, 0.4, -2.9], [12.0, 2.3, -2.2]])?;
     expect(
-        end.starts_with('⌀') && is_near(&end, 6.0, 0.03),
+        end.starts_with('⌀') && is_near(&end, 6.0, 0.02),
         &format!("the end of the slot measures {end}"),
     )?;
     click(browser, "#measure")?;
     click(browser, "#home")?;
     camera(browser)?;
+    // Between two lines.
+    let wall = picked(browser, &[[4.5, 3.2, -1.0]])?;
+    let y = wall.split_once(',').map_or("", |(_, rest)| rest);
+    expect(is_near(y, 3.2, 0.005), &format!("the wall at y = 3.2 is at {wall}"))?;
     // From above.
     let [x, y] = middle(browser, "#canvas")?;
     browser.drag(&[[x, y], [x, y + 45.0], [x, y + 90.0]])?;
