@@ -12,8 +12,8 @@ use crate::tree::{Checked, walked};
 use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
 use crate::zone::Ring;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Checks what is claimed in answer to a question: that what is measured is at most its bound, and at least as much
 /// as at its witness. `threads`: how many work at it.
@@ -178,7 +178,8 @@ impl Asked<'_> {
         if claim.trees.iter().any(|tree| tree.count > MOST_MOTIONS) {
             return Err("a tree is about too many motions".into());
         }
-        let root = Cell::root(centre, half, claim.lift, surface);
+        let new_root = || Arc::new(Cell::root(centre, half, claim.lift, surface));
+        let root = Mutex::new(new_root());
         let one = |tree: &Tree, bytes: &[u8]| {
             let path = self.question.movers[tree.mover].0;
             let motions = &scene.paths[path][tree.first..tree.first + tree.count];
@@ -193,6 +194,14 @@ impl Asked<'_> {
             // Linear motions are exact.
             let is_exact = motions.iter().all(|own| matches!(own.course, Course::Linear(_)));
             let more = if is_exact { 0.0 } else { scene.deviation };
+            // All trees share their cells, until these are many.
+            let root = {
+                let mut root = root.lock().expect("no thread has panicked");
+                if surface.is_crowded() {
+                    *root = new_root();
+                }
+                Arc::clone(&root)
+            };
             depths((&root, surface), (&run, path), bytes, [claim.bound, more])
         };
         self.witness(surface)?;

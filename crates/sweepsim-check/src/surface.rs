@@ -7,7 +7,7 @@
 
 use crate::scene::Triangle;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, is_finite, norm, norm_up, scaled, size, sub, unit};
-use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 struct Node {
     low: V3,
@@ -33,6 +33,9 @@ const LEAF: usize = 4;
 /// outside.
 const WITHIN: f64 = 1e-7;
 const BESIDE: f64 = 1e-12;
+/// So many cells may there be, and so many are kept for the next tree.
+const MOST_CELLS: usize = 3_000_000;
+const KEPT: usize = 1_000_000;
 /// Rays go these ways, until one meets no edge.
 const WAYS: [V3; 5] = [
     [0.537, 0.611, 0.581],
@@ -62,10 +65,19 @@ impl Surface {
             order: (0..triangles.len() as u32).collect(),
             nodes: Vec::new(),
             size: triangles.as_flattened().iter().map(size).fold(0.0, f64::max),
-            cells_left: AtomicUsize::new(4_000_000),
+            cells_left: AtomicUsize::new(MOST_CELLS),
         };
         surface.build(0, triangles.len());
         Ok(surface)
+    }
+
+    /// Whether cells are so many that they are to be forgotten, as they are then.
+    pub fn is_crowded(&self) -> bool {
+        let is_crowded = self.cells_left.load(Ordering::Relaxed) < MOST_CELLS - KEPT;
+        if is_crowded {
+            self.cells_left.store(MOST_CELLS, Ordering::Relaxed);
+        }
+        is_crowded
     }
 
     fn build(&mut self, first: usize, last: usize) {

@@ -12,14 +12,14 @@
 //! the error, which stays much below the difference between `CLIP` and `AROUND`.
 
 use crate::surface::Surface;
-use crate::vector::{EPS, MORE, V3, add, dot_up, norm_up, scaled, sub, sum_up, unit};
+use crate::vector::{EPS, MORE, V3, add, dot_down, dot_up, norm_up, scaled, sub, sum_up, unit};
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
 const AROUND: f64 = 1.0 + 7e-4;
 const CLIP: f64 = 1.0 + 9e-4;
 /// Cells with more triangles near them keep the numbers of these only.
-const MOST_PIECES: usize = 256;
+const MOST_PIECES: usize = 1024;
 
 /// Nothing is lifted above more planes together.
 pub(crate) const MOST_PLANES: usize = 8;
@@ -214,13 +214,14 @@ impl Cell {
         (self.half + self.lift()) * AROUND * (2.0 - MORE)
     }
 
-    /// That corner of the surroundings which is farthest along `n`, if it is outside.
-    pub fn corner_outside(&self, n: &V3, surface: &Surface) -> Option<V3> {
+    /// Whether what of the surroundings is above a plane, where there is no surface, is outside: as that corner is
+    /// which is farthest along `n`. If even that is below the plane, there is nothing.
+    pub fn is_outside_above(&self, (n, top): (&V3, f64), surface: &Surface) -> bool {
         let around = self.around();
         let octant = (0..3).filter(|k| n[*k] > 0.0).fold(0, |octant, k| octant | 1 << k);
         let corner: V3 = std::array::from_fn(|k| self.centre[k] + if octant >> k & 1 == 1 { around } else { -around });
-        let outside = self.outside[octant].get_or_init(|| surface.is_outside(&corner) == Some(true));
-        outside.then_some(corner)
+        let is_outside = || *self.outside[octant].get_or_init(|| surface.is_outside(&corner) == Some(true));
+        dot_up(n, &corner) <= top || dot_down(n, &corner) > top && is_outside()
     }
 
     /// No point of the cell is deeper: depths change no faster than places.

@@ -134,8 +134,7 @@ impl Near<'_> {
     /// `e` of a plane, if what is above it in the surroundings is outside.
     fn top_of_outside(&self, n: &V3) -> Option<f64> {
         let top = self.cell.top_up(n)?;
-        let corner = self.cell.corner_outside(n, self.surface)?;
-        (dot_down(n, &corner) > top).then_some(top)
+        self.cell.is_outside_above((n, top), self.surface).then_some(top)
     }
 
     fn slab(&self, n: &V3, m: &V3) -> Option<f64> {
@@ -187,7 +186,7 @@ impl Near<'_> {
         // The lift is looked for a little beyond what is needed, and then checked.
         let more = 64.0 * EPS * scale;
         let needs: Vec<f64> = used.iter().map(|i| (tops[*i] + reach[*i]).max(-half) + more).collect();
-        let lift = shortest(&normals, &needs)?;
+        let lift = shortest(&normals, &needs, 1e-13)?;
         let lifts = used
             .iter()
             .zip(&normals)
@@ -199,21 +198,21 @@ impl Near<'_> {
         // A place above all planes, in the surroundings, that is outside.
         let own = |(i, n): (&usize, &V3)| (tops[*i] - dot(n, &self.cell.centre)).max(-half) + 0.01 * half;
         let needs: Vec<f64> = used.iter().zip(&normals).map(own).collect();
-        let place = self.cell.place(&shortest(&normals, &needs)?)?;
+        let place = self.cell.place(&shortest(&normals, &needs, 1e-9)?)?;
         let is_above = used.iter().zip(&normals).all(|(i, n)| dot_down(n, &place) > tops[*i]);
         (is_above && self.surface.is_outside(&place) == Some(true)).then_some(value)
     }
 }
 
 /// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet up to three of them exactly, and all others too.
-fn shortest(normals: &[V3], needs: &[f64]) -> Option<V3> {
+fn shortest(normals: &[V3], needs: &[f64], off: f64) -> Option<V3> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let mut best: Option<V3> = None;
     let mut take = |w: V3| {
         let meets = normals
             .iter()
             .zip(needs)
-            .all(|(n, need)| dot_up(n, &w) >= need - 1e-13 * size);
+            .all(|(n, need)| dot_up(n, &w) >= need - off * size);
         if meets && best.is_none_or(|best| dot(&w, &w) < dot(&best, &best)) {
             best = Some(w);
         }

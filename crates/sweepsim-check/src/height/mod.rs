@@ -10,6 +10,7 @@
 //! - **Removed**: of what is left so, all points are in one convex part of a tool at one time; or each at some time
 //!   of a straight stretch, along which a convex solid sweeps a convex one. So their hull was removed.
 //! - **Near**: all points are nearer to one triangle than `d`. That is convex, too: so it is not in `Σ`.
+//! - **Inside**: the ball around the middle that has all points meets no triangle, and the middle is in the solid.
 //!
 //! All this holds by a [margin](crate::Scene::margin), which is larger than roundings, what is flat, and what motions
 //! deviate by.
@@ -71,7 +72,7 @@ impl Left<'_> {
         if kind == 0 {
             return Some(patch.is_flat);
         }
-        let points = patch.points(self.distance).map_or(Vec::new(), |(points, _)| points);
+        let (points, middle) = patch.points(self.distance).unwrap_or_default();
         let is_known = !points.is_empty();
         let within = self.within(&points);
         let holds = match kind {
@@ -88,6 +89,11 @@ impl Left<'_> {
                 let stretch = Stretch::new(&self.scene.paths[*path][motion])?;
                 let time = reader.float_if(!stretch.is_straight())?;
                 { within.iter() }.all(|p| removes(body, &stretch, (time, 1.0), &Ring::point(*p), self.scene.margin))
+            }
+            4 => {
+                let far = points.iter().map(|p| norm_up(&sub(p, &middle))).fold(0.0, f64::max);
+                far + self.scene.margin < self.surface.nearest(&middle).0
+                    && self.surface.is_outside(&middle) == Some(false)
             }
             _ => return None,
         };

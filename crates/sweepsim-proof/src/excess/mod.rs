@@ -6,7 +6,8 @@
 //!
 //! `Σ` is covered by [patches](surface) with few corners. A patch is done if all of its corners are beyond one face of
 //! the stock, or in one convex solid that was removed: an exact part of a cutter at some time, or all along a straight
-//! stretch; or if they are nearer to one triangle than `d`, so that the patch is not in `Σ`. Else it is divided.
+//! stretch; or if they are nearer to one triangle than `d`, or in the target, so that the patch is not in `Σ`. Else it
+//! is divided.
 
 mod bounding;
 mod found;

@@ -8,6 +8,7 @@
 //! | 1 | Outside of the stock. |
 //! | 2 | Nearer to a triangle: its number. |
 //! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
+//! | 4 | Inside of the solid, all of a ball around its middle. |
 //! | 10, 11, 12 | Parted between the corners 0 and 1, 0 and 2, or 1 and 2: at which part of the way, an `f32`. |
 //! | 13, 14, 15 | Halved between two normals; of opposite ones, by way of the third. |
 //! | 16 | For any three of its normals. |
@@ -70,6 +71,10 @@ impl Record {
             write_number(&mut self.0, number);
         }
         self.0.extend(holder.time.iter().flat_map(|time| time.to_le_bytes()));
+    }
+
+    pub fn inside(&mut self) {
+        self.0.push(4);
     }
 
     pub fn halved(&mut self, halved: Halved) {

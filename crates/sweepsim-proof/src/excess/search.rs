@@ -46,6 +46,8 @@ const ROUNDS: usize = 16;
 const RESERVE: usize = 2;
 /// What is far from the target need not be known better than this part of it.
 const SHARE: f64 = 1.0 / 64.0;
+/// However many parts there are, so many patches may be looked at for each of them.
+const PATCHES_OF_A_PART: usize = 4;
 /// The surface is divided into at least so many patches, so that all threads have work.
 const PARTS: f64 = 512.0;
 /// At first, so many parts of every patch are looked at.
@@ -222,8 +224,9 @@ impl Scene<'_> {
         let mut distance = limits.width;
         // Whether the limit is kept comes before how far below it the bound is.
         let reserve = RESERVE * self.patches.len();
+        let budget = limits.pairs.max(PATCHES_OF_A_PART * self.patches.len());
         for _ in 0..ROUNDS {
-            let most = limits.pairs.saturating_sub(left.patches);
+            let most = budget.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
             let own = most.saturating_sub(if distance < limits.depth { reserve } else { 0 });
             let (found, records) = self.at_distance(distance, (known, limits.width), own, (blocks, monitor))?;
@@ -250,7 +253,7 @@ impl Scene<'_> {
             let known = left.highest.map_or(0.0, |(_, height)| height);
             let above = known + limits.width.max(SHARE * known);
             let is_undecided = known < limits.depth && distance < limits.depth;
-            let has_room = left.patches + 2 * reserve < limits.pairs;
+            let has_room = left.patches + 2 * reserve < budget;
             distance = match found.is_left && above > distance {
                 true if is_undecided && has_room => above.min(limits.depth),
                 true if !is_undecided => above,

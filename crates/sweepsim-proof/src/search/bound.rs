@@ -137,7 +137,7 @@ impl Above<'_> {
         let mut tops = [f64::NEG_INFINITY; MOST_PLANES];
         // Each triangle has to be below one of the planes: the first of those that the solid is about least below, so
         // that rounding does not decide, and a checker chooses the same.
-        for piece in self.cell.pieces() {
+        for piece in self.cell.pieces(self.triangles) {
             let (mut own, mut least) = ([f64::INFINITY; MOST_PLANES], f64::INFINITY);
             for (own, (way, below)) in own.iter_mut().zip(planes) {
                 let heights = piece.corners.iter().map(|corner| way.vector.dot(corner));
@@ -178,7 +178,12 @@ impl Above<'_> {
         else {
             return;
         };
-        if is_outside(&(self.cell.centre + off), self.cell.pieces(), self.triangles) == Some(true) {
+        if is_outside(
+            &(self.cell.centre + off),
+            self.cell.pieces(self.triangles),
+            self.triangles,
+        ) == Some(true)
+        {
             let normal = lift.try_normalize(1e-9 * half).unwrap_or(normals[0]);
             let several = normals.len() > 1;
             let reason = (if several { Reason::LiftedAbove } else { Reason::Lifted }, written);

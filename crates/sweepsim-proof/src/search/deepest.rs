@@ -6,7 +6,7 @@ use super::pair::{Pair, When};
 use super::reach::During;
 use super::trace::{NO_NORMALS, Reason, Trace, one};
 use crate::motion::{Run, Stretch};
-use crate::solid::{Cell, MOST_PIECES, Near, Target};
+use crate::solid::{Cell, Near, Target};
 use crate::statement::Witness;
 use nalgebra::Vector3;
 use std::collections::BinaryHeap;
@@ -166,11 +166,12 @@ impl<'a> Search<'a> {
         };
         // Whether shorter times would do, as the path would bend less.
         let mut bends = false;
-        let straight = match pieces {
-            0..=MOST_PIECES => STRAIGHT * cell.lift,
-            _ => cell.half,
+        let straight = if cell.has_many() {
+            cell.half
+        } else {
+            STRAIGHT * cell.lift
         };
-        if few && pieces <= MOST_PIECES {
+        if few && !cell.has_many() {
             let above = Above {
                 during,
                 cell,
@@ -265,22 +266,22 @@ impl<'a> Search<'a> {
                 self.nothing(node, Reason::Missed);
                 continue;
             }
-            let Some(child) = cell.child(octant, &target.triangles, &target.distance, &target.cells_left) else {
+            let Some(child) = target.child(cell, octant) else {
                 return false;
             };
-            if matches!(child.near, Near::Outside) {
-                self.nothing(node, Reason::Outside);
-                continue;
-            }
-            let known = match child.count() {
-                0 => depth.min(self.deepest_by_middle(child, node)),
-                1..=MOST_PIECES => {
+            let known = match child.near {
+                Near::Outside => {
+                    self.nothing(node, Reason::Outside);
+                    continue;
+                }
+                Near::Inside => depth.min(self.deepest_by_middle(child, node)),
+                Near::Many(_) => depth,
+                Near::Surface(_) => {
                     let (own, way) = child.depth(&target.triangles);
                     let normals = way.map_or(NO_NORMALS, |way| one(way.written));
                     self.trace.bound(node, Reason::Lifted, normals, own);
                     depth.min(own)
                 }
-                _ => depth,
             };
             if known <= self.enough() {
                 self.settle(known);

@@ -7,7 +7,7 @@ use super::pair::{Pair, When};
 use super::reach::During;
 use super::trace::{NO_NORMALS, Reason, Trace, one};
 use crate::motion::Run;
-use crate::solid::{Cell, MOST_PIECES, Near, Target};
+use crate::solid::{Cell, Near, Target};
 use crate::statement::Witness;
 use crate::tool::Level;
 use nalgebra::Vector3;
@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
         let apart = Apart {
             during,
             cell,
-            surface: (cell.count() <= MOST_PIECES).then_some(self.target),
+            surface: (!cell.has_many()).then_some(self.target),
         };
         let Some((own, normal)) = apart.distance(self.enough()) else {
             self.settle(-pair.depth);
@@ -221,7 +221,7 @@ impl<'a> Search<'a> {
         let target = self.target;
         let first = self.trace.divide_cell(node);
         for (octant, node) in (0..8).zip(first..) {
-            let child = cell.child(octant, &target.triangles, &target.distance, &target.cells_left);
+            let child = target.child(cell, octant);
             let Some(child) = child else { return false };
             if matches!(child.near, Near::Outside | Near::Inside) {
                 self.nothing(node);

@@ -4,26 +4,15 @@
 //! from `H` as far as it may be. It knows the triangles that meet `H′`, clipped to it. Its parts are made when they are
 //! asked for.
 
+use super::depth;
+use super::near::Near;
 use super::outside::is_outside;
-use super::polygon::{Piece, area, clip};
+use super::pieces::{Piece, Pieces};
 use super::way::{Normal, Triangle, Way};
 use nalgebra::Vector3;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::DistanceTo;
-
-/// What is near a cell.
-#[derive(Clone, Debug)]
-pub(crate) enum Near {
-    /// Some of the surface.
-    Surface(Vec<Piece>),
-    /// So much of the surface that the cell is divided before it is looked at: the triangles.
-    Many(Vec<u32>),
-    /// All of the surroundings are in the solid.
-    Inside,
-    /// None of them is.
-    Outside,
-}
 
 /// What is found out of a cell with some of the surface near it, when it is first looked at.
 #[derive(Debug)]
@@ -45,17 +34,17 @@ pub(crate) struct Cell {
     pub half: f64,
     /// So far something may be lifted off the cell: as far as is wanted, if that is neither little nor much for it.
     pub lift: f64,
-    wanted: f64,
+    grain: Grain,
     pub near: Near,
     known: OnceLock<Known>,
     deepest: OnceLock<f64>,
-    children: OnceLock<Box<[OnceLock<Cell>; 8]>>,
+    children: OnceLock<Box<Children>>,
 }
 
-/// Cells with more pieces than this are divided before they are looked at.
-pub(crate) const MOST_PIECES: usize = 256;
-/// So many pieces take as much memory as a cell without any: some 600 bytes.
-const PIECES_OF_A_CELL: usize = 4;
+type Children = [OnceLock<Cell>; 8];
+
+/// What is found out of a cell, but for the corners.
+const KNOWN: usize = MOST_WAYS * size_of::<Way>();
 /// As many directions are tried.
 pub(crate) const MOST_WAYS: usize = 8;
 /// A hollow is deeper than this part of what may have to be lifted.
@@ -71,58 +60,36 @@ const LIFT: [f64; 2] = [0.125, 1.0];
 /// Surroundings are a little larger than what may be lifted into, for rounding.
 const MARGIN: f64 = 1e-3;
 
+/// How a solid is divided into cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grain {
+    /// So far something may have to be lifted.
+    pub lift: f64,
+    /// Cells with more pieces are divided before they are looked at.
+    pub pieces: usize,
+}
+
 impl Cell {
-    /// `around`: what is near a cell that this one is in; `lift`: so far something may have to be lifted.
+    /// `around`: what is near a cell that this one is in.
     pub fn new(
         (centre, half): (Vector3<f64>, f64),
-        lift: f64,
+        grain: Grain,
         around: &Near,
         triangles: &[Triangle],
         distance: &DistanceTo,
     ) -> Self {
-        let with = |near: Near| Self::with((centre, half), lift, near);
-        let reach = with(Near::Outside).around();
-        let clipped = |triangle: u32, corners: &[Vector3<f64>]| {
-            let corners = clip(corners, &centre, reach)?;
-            Some(Piece { triangle, corners })
-        };
-        let pieces: Vec<Piece> = match around {
-            Near::Surface(pieces) => {
-                let own = pieces
-                    .iter()
-                    .filter_map(|piece| clipped(piece.triangle, &piece.corners));
-                own.collect()
-            }
-            Near::Many(numbers) => {
-                let own = |number: u32| clipped(number, &triangles[number as usize].corners);
-                let is_near = |number: &u32| own(*number).is_some();
-                let numbers: Vec<u32> = numbers.iter().copied().filter(is_near).collect();
-                if numbers.len() > MOST_PIECES {
-                    return with(Near::Many(numbers));
-                }
-                numbers.into_iter().filter_map(own).collect()
-            }
-            Near::Inside | Near::Outside => return with(around.clone()),
-        };
-        let near = match pieces.len() {
-            0 if depth(distance, &centre) < 0.0 => Near::Outside,
-            0 => Near::Inside,
-            _ => Near::Surface(pieces),
-        };
-        with(near)
-    }
-
-    fn with((centre, half): (Vector3<f64>, f64), wanted: f64, near: Near) -> Self {
-        Self {
+        let mut cell = Self {
             centre,
             half,
-            lift: wanted.clamp(LIFT[0] * half, LIFT[1] * half),
-            wanted,
-            near,
+            lift: grain.lift.clamp(LIFT[0] * half, LIFT[1] * half),
+            grain,
+            near: Near::Outside,
             known: OnceLock::new(),
             deepest: OnceLock::new(),
             children: OnceLock::new(),
-        }
+        };
+        cell.near = around.within((&centre, cell.around()), grain.pieces, triangles, distance);
+        cell
     }
 
     /// Half the size of the surroundings.
@@ -132,17 +99,19 @@ impl Cell {
 
     /// How many triangles are near.
     pub fn count(&self) -> usize {
-        match &self.near {
-            Near::Surface(pieces) => pieces.len(),
-            Near::Many(numbers) => numbers.len(),
-            Near::Inside | Near::Outside => 0,
-        }
+        self.near.count()
     }
 
-    pub fn pieces(&self) -> &[Piece] {
+    /// Whether it has so many of them that it is divided before it is looked at.
+    pub fn has_many(&self) -> bool {
+        matches!(self.near, Near::Many(_))
+    }
+
+    pub fn pieces<'a>(&'a self, triangles: &'a [Triangle]) -> impl ExactSizeIterator<Item = Piece<'a>> + Clone {
+        static NONE: Pieces = Pieces::none();
         match &self.near {
-            Near::Surface(pieces) => pieces,
-            _ => &[],
+            Near::Surface(pieces) => pieces.iter(triangles),
+            _ => NONE.iter(triangles),
         }
     }
 
@@ -159,36 +128,58 @@ impl Cell {
         self.centre + Vector3::from_fn(|k, _| if octant >> k & 1 == 0 { -half } else { half })
     }
 
-    /// One of them. `None` if there are as many cells as there may be.
+    /// One of them. `None` if there is no memory left for it.
     pub fn child(
         &self,
         octant: usize,
         triangles: &[Triangle],
         distance: &DistanceTo,
-        left: &AtomicUsize,
+        bytes_left: &AtomicUsize,
     ) -> Option<&Self> {
-        let children = self.children.get_or_init(Box::default);
-        let child = &children[octant];
-        if child.get().is_none() {
-            // It may have as many pieces as its parent has triangles.
-            let cells = 1 + self.count().min(MOST_PIECES) / PIECES_OF_A_CELL;
-            let take = |left: usize| left.checked_sub(cells);
-            left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
+        let take = |bytes: usize| {
+            let take = |left: usize| left.checked_sub(bytes);
+            bytes_left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()
+        };
+        if self.children.get().is_none() {
+            take(size_of::<Children>())?;
         }
+        let child = &self.children.get_or_init(Box::default)[octant];
+        if let Some(child) = child.get() {
+            return Some(child);
+        }
+        // Until it is known, it may take as much as its parent.
+        let most = self.bytes();
+        take(most)?;
         let own = (self.centre_of_child(octant), 0.5 * self.half);
-        Some(child.get_or_init(|| Self::new(own, self.wanted, &self.near, triangles, distance)))
+        let child = child.get_or_init(|| Self::new(own, self.grain, &self.near, triangles, distance));
+        let give_back = |left: usize| Some((left + most).saturating_sub(child.bytes()));
+        let _ = bytes_left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, give_back);
+        Some(child)
     }
 
-    /// Forgets all parts with few triangles: how many cells are left.
+    /// About how much memory it takes, together with what may be found out of it, and without its parts.
+    fn bytes(&self) -> usize {
+        let near = self.near.bytes();
+        near + if matches!(self.near, Near::Surface(_)) {
+            KNOWN + near
+        } else {
+            0
+        }
+    }
+
+    /// Forgets all parts with few triangles: how much memory the others take.
     pub fn prune(&mut self) -> usize {
-        let mut left = 1;
-        for child in self.children.get_mut().into_iter().flat_map(|all| all.iter_mut()) {
+        let Some(children) = self.children.get_mut() else {
+            return 0;
+        };
+        let mut bytes = size_of::<Children>();
+        for child in children.iter_mut() {
             match child.get_mut() {
-                Some(part) if matches!(part.near, Near::Many(_)) => left += part.prune(),
+                Some(part) if part.has_many() => bytes += part.bytes() + part.prune(),
                 _ => drop(child.take()),
             }
         }
-        left
+        bytes
     }
 
     /// Directions to try: the mean normal, and those of the triangles.
@@ -215,9 +206,8 @@ impl Cell {
 
     fn known(&self, triangles: &[Triangle]) -> &Known {
         self.known.get_or_init(|| {
-            let pieces = self.pieces();
-            let mut corners: Vec<Vector3<f64>> =
-                pieces.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
+            let own = self.pieces(triangles).flat_map(|piece| piece.corners);
+            let mut corners: Vec<Vector3<f64>> = own.copied().collect();
             let bits = |p: &Vector3<f64>| [p.x, p.y, p.z].map(f64::to_bits);
             corners.sort_unstable_by_key(bits);
             corners.dedup_by_key(|p| bits(p));
@@ -247,11 +237,10 @@ impl Cell {
     /// The mean normal and those of the triangles, as far as they differ; the latter alone if these are all; and
     /// whether all are nearly the same.
     fn normals(&self, triangles: &[Triangle]) -> (Vec<Normal>, Vec<Normal>, bool) {
-        let pieces = self.pieces();
         let mut clusters: Vec<(Normal, f64)> = Vec::new();
-        for piece in pieces {
+        for piece in self.pieces(triangles) {
             let normal = Normal::of(&triangles[piece.triangle as usize]);
-            let area = area(&piece.corners);
+            let area = piece.area();
             let same = |(other, _): &&mut (Normal, f64)| other.vector.dot(&normal.vector) > SAME_WAY;
             match clusters.iter_mut().find(same) {
                 Some((_, sum)) => *sum += area,
@@ -261,8 +250,8 @@ impl Cell {
         let sum: Vector3<f64> = clusters.iter().map(|(normal, area)| normal.vector * *area).sum();
         let mean = sum.try_normalize(1e-300).filter(|_| clusters.len() > 1);
         let is_smooth = mean.is_none_or(|mean| {
-            let normal = |piece: &Piece| triangles[piece.triangle as usize].normal;
-            pieces.iter().all(|piece| normal(piece).dot(&mean) > SMOOTH)
+            let normal = |piece: Piece| triangles[piece.triangle as usize].normal;
+            self.pieces(triangles).all(|piece| normal(piece).dot(&mean) > SMOOTH)
         });
         // A stable sort: the largest first. Of a smooth surface, one is enough.
         clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -279,9 +268,9 @@ impl Cell {
     /// Whether some of the surface is in front of the plane of other of it, by more than does not matter.
     fn is_hollow(&self, faces: &[Normal], triangles: &[Triangle], corners: &[Vector3<f64>]) -> bool {
         faces.iter().any(|face| {
-            let is_own = |piece: &&Piece| face.written == Normal::of(&triangles[piece.triangle as usize]).written;
-            let level = |own: &Piece| face.vector.dot(&own.corners[0]) + HOLLOW * self.wanted;
-            let own = self.pieces().iter().find(is_own).map(level);
+            let is_own = |piece: &Piece| face.written == Normal::of(&triangles[piece.triangle as usize]).written;
+            let level = |own: Piece| face.vector.dot(&own.corners[0]) + HOLLOW * self.grain.lift;
+            let own = self.pieces(triangles).find(is_own).map(level);
             own.is_some_and(|level| highest(corners, &face.vector).0 > level)
         })
     }
@@ -298,10 +287,10 @@ impl Cell {
         } = normal;
         let top = highest(corners, &normal).0;
         let is_out = || {
-            let above = self.middle_of_top(&normal, top) + normal * (0.5 * self.half * MARGIN);
+            let above = self.middle_of_top((&normal, top), triangles) + normal * (0.5 * self.half * MARGIN);
             // Beyond the surroundings, there may be triangles that are not known here.
             let is_near = (above - self.centre).amax() <= self.around();
-            is_near && is_outside(&above, self.pieces(), triangles) == Some(true)
+            is_near && is_outside(&above, self.pieces(triangles), triangles) == Some(true)
         };
         let out = self.faces_up(triangles, (&normal, top)) || is_out();
         Way {
@@ -321,9 +310,9 @@ impl Cell {
             let above = middle + normal * (top - normal.dot(&middle) + 0.5 * self.half * MARGIN);
             (above - self.centre).amax() <= self.around()
         };
-        let pieces = self.pieces();
-        pieces.iter().all(|piece| cosine(piece) >= 0.0)
-            && pieces.iter().any(|piece| cosine(piece) > 0.01 && leads_up(piece))
+        let mut pieces = self.pieces(triangles);
+        pieces.clone().all(|piece| cosine(&piece) >= 0.0)
+            && pieces.any(|piece| cosine(&piece) > 0.01 && leads_up(&piece))
     }
 
     /// The highest value of the surface along a direction, and where.
@@ -333,13 +322,13 @@ impl Cell {
     }
 
     /// The middle of the corners of one piece that are as high as the highest.
-    fn middle_of_top(&self, direction: &Vector3<f64>, top: f64) -> Vector3<f64> {
+    fn middle_of_top(&self, (direction, top): (&Vector3<f64>, f64), triangles: &[Triangle]) -> Vector3<f64> {
         let near = top - 1e-6 * self.half;
-        let highest = |piece: &Piece| {
+        let highest = |piece: Piece| {
             let high = || piece.corners.iter().filter(|corner| direction.dot(corner) >= near);
             (high().count(), high().sum::<Vector3<f64>>())
         };
-        let all = self.pieces().iter().map(highest);
+        let all = self.pieces(triangles).map(highest);
         let most = all.max_by_key(|(count, _)| *count);
         most.filter(|(count, _)| *count > 0)
             .map_or(self.centre, |(count, sum)| sum / count as f64)
@@ -363,12 +352,6 @@ fn highest(points: &[Vector3<f64>], direction: &Vector3<f64>) -> (f64, usize) {
     best
 }
 
-/// How deep a point is in the solid; negative outside.
-pub(super) fn depth(distance: &DistanceTo, point: &Vector3<f64>) -> f64 {
-    let nearest = distance.nearest((*point).into());
-    nearest.map_or(f64::NEG_INFINITY, |near| -near.distance)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -387,7 +370,14 @@ mod tests {
             .for_each(|corner| *corner = turned(*corner));
         let target = Target::new(&soup, 0.5).expect("closed");
         let all = Near::Many((0..12).collect());
-        let cell = Cell::new((Vector3::zeros(), 0.5), 0.5, &all, &target.triangles, &target.distance);
+        let grain = Grain { lift: 0.5, pieces: 256 };
+        let cell = Cell::new(
+            (Vector3::zeros(), 0.5),
+            grain,
+            &all,
+            &target.triangles,
+            &target.distance,
+        );
         let out = |direction: Vector3<f64>| {
             let normal = Normal::near(&direction).expect("a direction");
             cell.way(normal, &target.triangles).out

@@ -1,14 +1,17 @@
 //! The solid that must not be cut.
 
 mod cell;
+mod near;
 mod outside;
-mod polygon;
+mod pieces;
 mod way;
 
-pub(crate) use cell::{Cell, MOST_PIECES, MOST_PLANES, MOST_WAYS, Near};
+pub(crate) use cell::{Cell, MOST_PLANES, MOST_WAYS};
+pub(crate) use near::Near;
 pub(crate) use outside::is_outside;
 pub(crate) use way::{Normal, Triangle, Way, Written};
 
+use cell::Grain;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -24,9 +27,11 @@ pub struct Target {
     cube: (Vector3<f64>, f64),
     lift: f64,
     pub(crate) distance: DistanceTo,
-    /// How many more cells there may be.
-    pub(crate) cells_left: AtomicUsize,
-    /// Whether some part of a work had hardly enough of them.
+    /// How much memory more cells may take.
+    bytes_left: AtomicUsize,
+    /// Whether there was too little of it since it was last asked.
+    starved: AtomicBool,
+    /// Whether some part of a work had too little of it for itself.
     crowded: AtomicBool,
     /// A bound of all coordinates.
     pub(crate) size: f64,
@@ -34,10 +39,14 @@ pub struct Target {
     pub(crate) is_whole: bool,
 }
 
-/// At most as many cells, of some 600 bytes each; pieces count as further ones.
-const MOST_CELLS: usize = 2_000_000;
-/// No more of them are kept for the next parts of a work.
-const KEPT: usize = 200_000;
+/// Cells with more pieces than this are divided before they are looked at, but not before they are as small as what
+/// may have to be lifted: of dense triangles, these may have so many.
+const MOST_PIECES: usize = 256;
+const MOST_DENSE_PIECES: usize = 1024;
+/// So much memory cells may take.
+const MOST_BYTES: usize = 256_000_000;
+/// No more of it is kept for the next parts of a work.
+const KEPT: usize = MOST_BYTES / 8;
 /// So many parts of a work are done together, or some for each thread; in between, cells may be forgotten.
 const TOGETHER: usize = 16;
 const OF_A_THREAD: usize = 4;
@@ -58,7 +67,7 @@ impl Target {
     #[must_use]
     pub fn of_closed(soup: &TriangleSoup, lift: f64, distance: DistanceTo) -> Self {
         let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-        let mut triangles = Vec::with_capacity(soup.triangles.len());
+        let (mut triangles, mut area) = (Vec::with_capacity(soup.triangles.len()), 0.0);
         for (number, corners) in (0..).zip(&soup.triangles) {
             let corners = corners.map(Vector3::from);
             for corner in &corners {
@@ -67,6 +76,7 @@ impl Target {
             }
             // A triangle without area has no side; what it covers belongs to its neighbours' edges.
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            area += 0.5 * normal.norm();
             if let Some(normal) = normal.try_normalize(0.0) {
                 triangles.push(Triangle {
                     number,
@@ -78,14 +88,22 @@ impl Target {
         let all = Near::Many((0..triangles.len() as u32).collect());
         let size = low.amax().max(high.amax());
         let (centre, half) = root(&low, &high);
+        // Two sheets through the surroundings of a cell of this size.
+        let sheets = 2.0 * (4.0 * lift).powi(2);
+        let dense = triangles.len() as f64 * sheets / area;
+        let grain = Grain {
+            lift,
+            pieces: (dense as usize).clamp(MOST_PIECES, MOST_DENSE_PIECES),
+        };
         Self {
-            root: RwLock::new(Cell::new((centre, half), lift, &all, &triangles, &distance)),
+            root: RwLock::new(Cell::new((centre, half), grain, &all, &triangles, &distance)),
             cube: (centre, half),
             lift,
             is_whole: triangles.len() == soup.triangles.len(),
             triangles,
             distance,
-            cells_left: AtomicUsize::new(MOST_CELLS),
+            bytes_left: AtomicUsize::new(MOST_BYTES),
+            starved: AtomicBool::new(false),
             crowded: AtomicBool::new(false),
             size,
         }
@@ -117,43 +135,70 @@ impl Target {
                 all.extend(own);
                 continue;
             }
-            let (first, mut enough) = (all.len(), true);
+            let first = all.len();
             for some in some.chunks(TOGETHER.max(OF_A_THREAD * rayon::current_num_threads())) {
-                let own: Option<Vec<U>> = {
-                    let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
-                    some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
-                };
-                all.extend(own?);
-                let cells = MOST_CELLS - self.cells_left.load(Ordering::Relaxed);
-                // Whether there were enough cells must not depend on what was known before.
-                enough &= cells < MOST_CELLS - 2 * KEPT;
-                if cells > KEPT {
-                    let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
-                    let left = MOST_CELLS.saturating_sub(root.prune());
-                    self.cells_left.store(left, Ordering::Relaxed);
-                }
+                all.extend(self.all_of(some, &work)?);
             }
-            if enough {
+            // What was found with too little memory may depend on what was known before.
+            if !self.crowded.load(Ordering::Relaxed) {
                 keep(some, &all[first..]);
-            } else {
-                self.crowded.store(true, Ordering::Relaxed);
             }
         }
         Some(all)
     }
 
-    /// Whether a work on it nearly ran out of room. What is found then may depend on what was
+    /// Some parts together; if there is not enough memory for all of their cells, in halves.
+    fn all_of<T: Sync, U: Send>(&self, some: &[T], work: &(impl Fn(&Cell, &T) -> Option<U> + Sync)) -> Option<Vec<U>> {
+        let own: Option<Vec<U>> = {
+            let root = self.root.read().unwrap_or_else(PoisonError::into_inner);
+            some.par_iter().with_max_len(1).map(|part| work(&root, part)).collect()
+        };
+        let is_starved = self.starved.swap(false, Ordering::Relaxed);
+        if is_starved || MOST_BYTES - self.bytes_left.load(Ordering::Relaxed) > KEPT {
+            let mut root = self.root.write().unwrap_or_else(PoisonError::into_inner);
+            let left = MOST_BYTES.saturating_sub(root.prune());
+            self.bytes_left.store(left, Ordering::Relaxed);
+        }
+        if !is_starved {
+            return own;
+        }
+        if let [_] = some {
+            self.crowded.store(true, Ordering::Relaxed);
+            return own;
+        }
+        let (some, others) = some.split_at(some.len() / 2);
+        let mut all = self.all_of(some, work)?;
+        all.extend(self.all_of(others, work)?);
+        Some(all)
+    }
+
+    /// Whether a work on it ran out of memory. What is found then may depend on what was
     /// [known before](crate::Recall).
     #[must_use]
     pub fn is_crowded(&self) -> bool {
         self.crowded.load(Ordering::Relaxed)
     }
 
+    /// A part of a cell. `None` if there is no memory left for it.
+    pub(crate) fn child<'a>(&self, cell: &'a Cell, octant: usize) -> Option<&'a Cell> {
+        let child = cell.child(octant, &self.triangles, &self.distance, &self.bytes_left);
+        if child.is_none() {
+            self.starved.store(true, Ordering::Relaxed);
+        }
+        child
+    }
+
     /// How deep a point lies in the solid; negative outside.
     #[must_use]
     pub fn depth(&self, point: [f64; 3]) -> f64 {
-        cell::depth(&self.distance, &point.into())
+        depth(&self.distance, &point.into())
     }
+}
+
+/// How deep a point is in the solid; negative outside.
+fn depth(distance: &DistanceTo, point: &Vector3<f64>) -> f64 {
+    let nearest = distance.nearest((*point).into());
+    nearest.map_or(f64::NEG_INFINITY, |near| -near.distance)
 }
 
 /// A cube around a box, by its centre and half of its size. These have so few digits that the cubes into which it is
@@ -187,19 +232,19 @@ mod tests {
         let triangles = all.filter(|[a, b, c]| a != b && b != c && c != a).collect();
         let target = Target::new(&TriangleSoup { triangles }, 0.01).expect("closed");
         fn pieces(cell: &Cell, target: &Target) -> usize {
-            let child = |n| cell.child(n, &target.triangles, &target.distance, &target.cells_left);
+            let child = |n| target.child(cell, n);
             match cell.near {
                 Near::Many(_) => (0..8).filter_map(child).map(|part| pieces(part, target)).sum(),
-                _ => cell.pieces().len(),
+                _ => cell.pieces(&target.triangles).len(),
             }
         }
         let held = pieces(&target.root.read().unwrap(), &target);
-        let paid = MOST_CELLS - target.cells_left.load(Ordering::Relaxed);
-        assert!(held > 16_000 && paid >= held / 4, "{paid} cells for {held} pieces");
+        let paid = MOST_BYTES - target.bytes_left.load(Ordering::Relaxed);
+        assert!(held > 16_000 && paid >= 50 * held, "{paid} bytes for {held} pieces");
         let mut root = target.root.write().unwrap();
         let left = root.prune();
-        assert!(0 < left && left < paid / 10, "{left} of {paid} cells are left");
-        target.cells_left.store(MOST_CELLS - left, Ordering::Relaxed);
+        assert!(0 < left && left < paid / 10, "{left} of {paid} bytes are left");
+        target.bytes_left.store(MOST_BYTES - left, Ordering::Relaxed);
         drop(root);
         assert_eq!(pieces(&target.root.read().unwrap(), &target), held);
     }

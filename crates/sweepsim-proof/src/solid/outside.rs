@@ -1,6 +1,6 @@
 //! Whether a point near some of a surface is outside.
 
-use super::polygon::Piece;
+use super::pieces::Piece;
 use super::way::Triangle;
 use nalgebra::Vector3;
 
@@ -9,14 +9,18 @@ const TRIES: usize = 12;
 
 /// Whether a point is outside, if all that lies between it and the pieces is among them: by the first triangle on the
 /// way to the middle of one. `None` if every way meets an edge.
-pub(crate) fn is_outside(point: &Vector3<f64>, pieces: &[Piece], triangles: &[Triangle]) -> Option<bool> {
+pub(crate) fn is_outside<'a>(
+    point: &Vector3<f64>,
+    pieces: impl ExactSizeIterator<Item = Piece<'a>> + Clone,
+    triangles: &[Triangle],
+) -> Option<bool> {
     let step = pieces.len().div_ceil(TRIES).max(1);
-    pieces.iter().step_by(step).find_map(|piece| {
+    pieces.clone().step_by(step).find_map(|piece| {
         let count = piece.corners.len() as f64;
         let target = piece.corners.iter().sum::<Vector3<f64>>() / count;
         let way = target - point;
         let mut first: Option<(f64, f64)> = None;
-        for other in pieces {
+        for other in pieces.clone() {
             let triangle = &triangles[other.triangle as usize];
             let slope = triangle.normal.dot(&way);
             let [a, b, c] = triangle.corners;

@@ -2,7 +2,7 @@
 
 use crate::certificates::{certified, check_height};
 use crate::scenes::{radius_at, target, tool};
-use crate::walls::{LIFT, slot};
+use crate::walls::{LIFT, extruded, slot};
 use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
@@ -14,31 +14,37 @@ use sweepsim_props::*;
 const LIMITS: Limits = Limits::new(0.02, 0.002, 500_000);
 
 fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
+    left_of(([-30.0, 30.0], target), tool, tips, &LIMITS)
+}
+
+/// `x`: from where to where the stock is.
+fn left_of((x, target): ([f64; 2], &TriangleSoup), tool: &Tool, tips: &[[f64; 3]], limits: &Limits) -> Left {
     let up = [0.0, 0.0, 1.0];
     let poses = tips.iter().map(|tip| Pose::new(*tip, up).expect("a pose"));
     let path = Path::new(poses.collect()).expect("a path");
     let stock = Stock::Block {
-        min: [-30.0, -20.0, -10.0],
-        max: [30.0, 20.0, 10.0],
+        min: [x[0], -20.0, -10.0],
+        max: [x[1], 20.0, 10.0],
     };
     let solids = cover(tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
     let solid = Target::new(target, LIFT).expect("closed");
-    let left = highest(&solid, &stock, &[cutter], &LIMITS, true, &());
+    let left = highest(&solid, &stock, &[cutter], limits, true, &());
     let left = left.expect("a stock").expect("not cancelled");
-    check_height((target, &stock), (tool, &cutter), &LIMITS, &left);
+    check_height((target, &stock), (tool, &cutter), limits, &left);
     left
 }
 
+const TIPS: [[f64; 3]; 4] = [
+    [-40.0, 0.0, 15.0],
+    [-40.0, 0.0, 2.0],
+    [40.0, 0.0, 2.0],
+    [40.0, 0.0, 15.0],
+];
+
 fn check(target: &TriangleSoup, truth: f64) {
     let tool = Tool::flat(5.0, 30.0).expect("a tool");
-    let tips = [
-        [-40.0, 0.0, 15.0],
-        [-40.0, 0.0, 2.0],
-        [40.0, 0.0, 2.0],
-        [40.0, 0.0, 15.0],
-    ];
-    let found = left(target, &tool, &tips);
+    let found = left(target, &tool, &TIPS);
     let known = found.highest.map_or(0.0, |(_, height)| height);
     assert!(
         found.open.is_empty(),
@@ -58,6 +64,39 @@ fn what_is_left_of_walls_and_floors_is_enclosed() {
     for off in [0.1, 0.05, 0.021, 0.019] {
         check(&slot(-5.0, 5.0 + off, 2.0), off);
         check(&slot(-5.0, 5.0, 2.0 - off), off);
+    }
+}
+
+/// A gap in the floor is narrower than all margins: what is in front of one of its sides is behind the other.
+#[test]
+fn a_narrow_gap_is_no_riddle() {
+    let limits = Limits {
+        deviation: 1e-3,
+        ..Limits::new(0.2, 0.02, 500_000)
+    };
+    let tool = Tool::flat(5.0, 30.0).expect("a tool");
+    for gap in [5e-4, 1e-3] {
+        let profile = [
+            [-20.0, -10.0],
+            [20.0, -10.0],
+            [20.0, 10.0],
+            [5.0, 10.0],
+            [5.0, 2.0],
+            [gap, 2.0],
+            [gap, 1.5],
+            [0.0, 1.5],
+            [0.0, 2.0],
+            [-5.0, 2.0],
+            [-5.0, 10.0],
+            [-20.0, 10.0],
+        ];
+        let x = [-1.0, 1.0];
+        let found = left_of((x, &extruded(&profile, x)), &tool, &TIPS, &limits);
+        assert!(
+            found.bound <= limits.width && found.open.is_empty(),
+            "{gap}: {} open",
+            found.open_count
+        );
     }
 }
 

@@ -20,7 +20,7 @@ fn blocks(all: &[([f64; 3], [f64; 3])]) -> TriangleSoup {
 }
 
 /// A block with a slot along x: its profile in `y, z`, extruded.
-fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> TriangleSoup {
+pub(crate) fn extruded(profile: &[[f64; 2]], x: [f64; 2]) -> TriangleSoup {
     let count = profile.len();
     let at = |k: usize, x: f64| [x, profile[k % count][0], profile[k % count][1]];
     let mut triangles = Vec::new();

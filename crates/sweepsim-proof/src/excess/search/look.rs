@@ -22,6 +22,14 @@ pub(super) struct Search<'a> {
     pub around: Bounds,
 }
 
+/// Why points are not at a distance from the target, on the outside.
+enum ByTheTarget {
+    /// They are nearer to this triangle.
+    Near([[f64; 3]; 3]),
+    /// They are in it, as no surface is around them.
+    Inside,
+}
+
 impl Search<'_> {
     pub fn look(&mut self, patch: Patch, most: usize) {
         let mut open = vec![patch];
@@ -53,9 +61,16 @@ impl Search<'_> {
                 self.record(|record| record.removed(holder));
                 continue;
             }
-            if let Some(corners) = self.near(&whole, &middle) {
-                self.record(|record| record.near(scene.numbers.get(&key(&corners)).copied().unwrap_or(u32::MAX)));
-                continue;
+            match self.by_the_target(&whole, &middle) {
+                Some(ByTheTarget::Near(corners)) => {
+                    self.record(|record| record.near(scene.numbers.get(&key(&corners)).copied().unwrap_or(u32::MAX)));
+                    continue;
+                }
+                Some(ByTheTarget::Inside) => {
+                    self.record(Record::inside);
+                    continue;
+                }
+                None => {}
             }
             if !is_removed && self.is_left(&middle) {
                 let height = scene.height(&middle) - scene.removed.margin;
@@ -97,13 +112,18 @@ impl Search<'_> {
         }
     }
 
-    /// The triangle to which the hull of some points is nearer than the distance.
-    fn near(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<[[f64; 3]; 3]> {
-        let triangle = self.scene.target.distance.nearest_triangle((*middle).into())?;
-        let least = self.distance - self.scene.removed.margin;
+    /// Why the hull of some points has nothing that is outside of the target, at the distance from it.
+    fn by_the_target(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<ByTheTarget> {
+        let (target, margin) = (self.scene.target, self.scene.removed.margin);
+        let triangle = target.distance.nearest_triangle((*middle).into())?;
+        let least = self.distance - margin;
         let mut all = points.iter().map(|point| triangle.distance_of((*point).into()));
-        let is_near = triangle.distance < least && all.all(|distance| distance < least);
-        is_near.then_some(triangle.corners)
+        if triangle.distance < least && all.all(|distance| distance < least) {
+            return Some(ByTheTarget::Near(triangle.corners));
+        }
+        let far = points.iter().map(|point| (point - middle).norm()).fold(0.0, f64::max);
+        let is_inside = far + margin < triangle.distance && target.depth((*middle).into()) > 0.0;
+        is_inside.then_some(ByTheTarget::Inside)
     }
 
     /// Notes that it matters what was removed around some points.
