@@ -83,6 +83,15 @@ impl JobReader<'_> {
         steps.iter().fold(&self.spans, |node, step| step.of(node))
     }
 
+    /// Refuses a map with a key that comes twice, of which the parser would take the last one.
+    pub(crate) fn each_once(&self, what: &str, steps: &[Step]) -> Result<(), FormatError> {
+        let Some((key, place)) = self.node(steps).second_key() else {
+            return Ok(());
+        };
+        let problem = Problem::syntax(format!("a second {what} {key}: expected each once"));
+        Err(FormatError::new(problem, Some(self.position(place))))
+    }
+
     pub(crate) fn check(
         &self,
         what: &str,

@@ -221,6 +221,11 @@ fn one_message_with_its_place() {
             "job.ron:7:48: tool 1: corner is -1",
         ),
         (tool, format!("{tool}, 1: {tool}"), "job.ron:7:48: a second tool 1"),
+        (
+            "    paths:",
+            format!("    bodies: {{ 1: [Holder({tool})], 1: [Shank({tool})] }},\n    paths:"),
+            "job.ron:9:64: a second list of bodies for tool 1: expected each once",
+        ),
         // Paths.
         (
             "tool: 1",
@@ -292,6 +297,27 @@ fn one_message_with_its_place() {
             poses,
             "file: \"bad.ngc\", arc_tolerance: -1".into(),
             "job.ron:10:55: arc_tolerance is -1",
+        ),
+        // What says how a program is read.
+        (
+            "tool: 1, ",
+            "tool: 1, machine: \"trunnion-ac\", ".into(),
+            "job.ron:10:32: `machine` without a program: it says how a program is read, expected it beside its `file`",
+        ),
+        (
+            "tool: 1, ",
+            "tool: 1, offsets: {\"G55\": (1, 2, 3)}, ".into(),
+            "job.ron:10:32: `offsets` without a program",
+        ),
+        (
+            poses,
+            "file: \"sweep.ron\", tip_control: true".into(),
+            "job.ron:10:55: `tip_control` without a program",
+        ),
+        (
+            poses,
+            "file: \"two.ngc\", offsets: {\"G55\": (1, 2, 3), \"G55\": (4, 5, 6)}".into(),
+            "job.ron:10:75: a second work offset \"G55\": expected each once",
         ),
         // Target and limits.
         (

@@ -327,3 +327,36 @@ fn a_job_places_work_offsets() {
     let bad = job(", offsets: {\"G55\": (inf, 0, 0)}").unwrap_err().to_string();
     assert!(bad.contains("a work offset is inf, but must be three numbers"), "{bad}");
 }
+
+/// A machine says whether its programs begin under tip control; a path may say otherwise.
+#[test]
+fn tip_control_is_that_of_the_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = |on: bool| {
+        let table = "table: [(letter: 'A', axis: (1, 0, 0), pivot: (0, 0, -50))]";
+        format!("Machine(name: \"m\", {table}, tip_control: {on})")
+    };
+    std::fs::write(folder.path().join("on.ron"), machine(true)).unwrap();
+    std::fs::write(folder.path().join("off.ron"), machine(false)).unwrap();
+    std::fs::write(folder.path().join("a.nc"), "G21 G0 X0 Y0 Z0 A90\nG1 X10 F100\n").unwrap();
+    let tip = |fields: &str| {
+        let text = format!(
+            r#"Job(grid: Grid(min: (-2, -2), max: (9, 4), cells: (6, 6)), stock: Block(min: (0, 0, -1), max: (2, 2, 0)),
+            tools: {{ 1: Flat(radius: 0.25, length: 2) }}, paths: [Path(tool: 1, file: "a.nc", {fields})])"#
+        );
+        let job = Job::parse(&text, &folder.path().join("job.ron")).unwrap();
+        job.paths[0].path.poses()[0].tip()
+    };
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+    // Without tip control, the zero point goes by a quarter turn about a point 50 mm below it.
+    let turned = [0.0, -50.0, -50.0];
+    for (fields, expected) in [
+        ("machine: \"on.ron\"", [0.0; 3]),
+        ("machine: \"on.ron\", tip_control: false", turned),
+        ("machine: \"off.ron\"", turned),
+        ("machine: \"off.ron\", tip_control: true", [0.0; 3]),
+    ] {
+        let found = tip(fields);
+        assert!(near(found, expected), "{fields}: {found:?}");
+    }
+}

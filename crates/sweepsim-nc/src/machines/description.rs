@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::bodies::{BASE, BodyDescription, BodyShape, Carries};
 use super::error::MachineError;
@@ -33,7 +34,7 @@ pub struct MachineDescription {
     #[serde(default)]
     pub tool_length: f64,
     /// The lengths of tools by number.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "each_once")]
     pub tool_lengths: BTreeMap<u32, f64>,
     /// How rapid moves are made.
     #[serde(default)]
@@ -61,6 +62,29 @@ pub struct MachineDescription {
     /// Pairs of bodies, by their names, that are not looked at, besides those on one link or on two that an axis joins.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub may_touch: Vec<(String, String)>,
+}
+
+/// Reads a map in which no key may come twice: otherwise the last one would count, without a word.
+fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<u32, f64>, D::Error> {
+    struct Once;
+    impl<'de> Visitor<'de> for Once {
+        type Value = BTreeMap<u32, f64>;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+            f.write_str("a map of numbers")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut all = BTreeMap::new();
+            while let Some((key, value)) = map.next_entry()? {
+                if all.insert(key, value).is_some() {
+                    return Err(A::Error::custom(format!("a second {key}: expected each once")));
+                }
+            }
+            Ok(all)
+        }
+    }
+    deserializer.deserialize_map(Once)
 }
 
 impl MachineDescription {

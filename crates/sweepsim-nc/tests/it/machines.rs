@@ -168,3 +168,11 @@ fn chords_share_the_time_of_their_block() {
         }
     }
 }
+
+/// Of two lengths of one tool, neither is the right one.
+#[test]
+fn a_second_length_of_a_tool_is_an_error() {
+    let text = "Machine(name: \"x\", tool_lengths: {1: 80, 2: 90, 1: 120})";
+    let error = Machine::read(text).unwrap_err().to_string();
+    assert!(error.contains("a second 1: expected each once"), "{error}");
+}

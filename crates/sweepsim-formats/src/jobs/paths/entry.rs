@@ -97,6 +97,14 @@ impl JobReader<'_> {
                 return Err(self.error(problem, &at));
             }
         }
+        if !reads_a_program(raw)
+            && let Some(field) = of_programs(raw)
+        {
+            let problem = Problem::syntax(format!(
+                "`{field}` without a program: it says how a program is read, expected it beside its `file`"
+            ));
+            return Err(self.error(problem, &steps(&[field.into()])));
+        }
         let whole = |tool: u32, path: Path, source: String| {
             let rapid: Flags = match &raw.moves {
                 Some(moves) => inline::rapids(moves).collect(),
@@ -177,7 +185,9 @@ impl JobReader<'_> {
                 options.inch = self.unit != 1.0;
                 self.dialect(raw, &mut options, &steps)?;
                 options.cutters = tools.diameters();
-                options.machine = std::mem::take(&mut options.machine).tip_control(raw.tip_control.unwrap_or(false));
+                if let Some(on) = raw.tip_control {
+                    options.machine.tip_control = on;
+                }
                 let given = match law {
                     schema::Law::Rotary(axes) => Some(table(axes)),
                     _ => raw.table.map(table),
@@ -194,10 +204,7 @@ impl JobReader<'_> {
                 options.level_arcs = options.upright_arcs || matches!(raw.arcs, Some(schema::Arcs::Level));
                 let file = self.beside(name, &steps(&["file".into()]))?;
                 options.within.clone_from(&self.provided.within);
-                if file
-                    .extension()
-                    .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
-                {
+                if is_motion(&file) {
                     if raw.law.is_some() {
                         let problem =
                             Problem::syntax("`law` with the file of a motion: a motion says how the tool turns");
@@ -261,6 +268,8 @@ impl JobReader<'_> {
     ) -> Result<(), FormatError> {
         options.lenient = raw.lenient.unwrap_or(false);
         options.strict = raw.strict.unwrap_or(false);
+        self.each_once("diameter", &steps(&["diameters".into()]))?;
+        self.each_once("work offset", &steps(&["offsets".into()]))?;
         for (name, &(x, y, z)) in &raw.offsets {
             let place = steps(&["offsets".into(), name.as_str().into()]);
             let finite = [x, y, z].iter().all(|c| c.is_finite());
@@ -308,4 +317,33 @@ impl JobReader<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether a file is one of a motion.
+fn is_motion(file: &std::path::Path) -> bool {
+    let extension = file.extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+}
+
+/// Whether a path is that of a program or of a table.
+fn reads_a_program(raw: &schema::Path) -> bool {
+    raw.file.as_ref().is_some_and(|file| !is_motion(file.as_ref()))
+}
+
+/// The first field that says how a program is read.
+fn of_programs(raw: &schema::Path) -> Option<&'static str> {
+    let given = [
+        ("machine", raw.machine.is_some()),
+        ("controller", raw.controller.is_some()),
+        ("format", raw.format.is_some()),
+        ("table", raw.table.is_some()),
+        ("tip_control", raw.tip_control.is_some()),
+        ("arcs", raw.arcs.is_some()),
+        ("arc_tolerance", raw.arc_tolerance.is_some()),
+        ("diameters", !raw.diameters.is_empty()),
+        ("offsets", !raw.offsets.is_empty()),
+        ("strict", raw.strict.is_some()),
+        ("lenient", raw.lenient.is_some()),
+    ];
+    given.iter().find(|(_, is)| *is).map(|(field, _)| *field)
 }

@@ -16,10 +16,8 @@ use crate::jobs::schema;
 impl JobReader<'_> {
     /// The tools of the job itself and of its library. Those of programs are added as they are read.
     pub(crate) fn tool_box(&self, raw: &schema::Job) -> Result<ToolBox, FormatError> {
-        if let Some((number, place)) = self.node(&["tools".into()]).second_key() {
-            let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
-            return Err(FormatError::new(problem, Some(self.position(place))));
-        }
+        self.each_once("tool", &["tools".into()])?;
+        self.each_once("list of bodies for tool", &["bodies".into()])?;
         let (mut tools, mut notes) = (BTreeMap::new(), Vec::new());
         for (&number, tool) in &raw.tools {
             let steps = vec!["tools".into(), Step::Key(number.to_string())];
