@@ -360,3 +360,34 @@ fn tip_control_is_that_of_the_machine() {
         assert!(near(found, expected), "{fields}: {found:?}");
     }
 }
+
+/// A rapid that turns an axis without tip control may be a dog-leg from its start to its end, if the machine does not
+/// say: one course, whose corner is where the first axis arrives.
+#[test]
+fn a_rapid_that_turns_may_be_one_dog_leg() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "Machine(name: \"m\", linear: [(letter: 'X', speed: 10000)], table: [(letter: 'A', axis: (1, 0, 0), \
+                   pivot: (0, 0, -50), speed: 3600)])";
+    std::fs::write(folder.path().join("m.ron"), machine).unwrap();
+    std::fs::write(
+        folder.path().join("a.nc"),
+        "G21 G0 X0 Y0 Z0\nX50 A90\nX0 A0\nG1 X1 F100\n",
+    )
+    .unwrap();
+    let text = r#"Job(grid: Grid(min: (-2, -2), max: (9, 4), cells: (6, 6)), stock: Block(min: (0, 0, -1), max: (2, 2, 0)),
+        tools: { 1: Flat(radius: 0.25, length: 2) }, paths: [Path(tool: 1, file: "a.nc", machine: "m.ron")])"#;
+    let job = Job::parse(text, &folder.path().join("job.ron")).unwrap();
+    let path = &job.paths[0];
+    let courses: Vec<_> = path.other_courses.of(0..path.path.moves()).collect();
+    assert_eq!(courses.len(), 2, "one for each block");
+    // X arrives after 0.3 s, when A is at 18°: the tip has gone by as much about a point 50 mm below it.
+    let (sine, cosine) = 18.0_f64.to_radians().sin_cos();
+    let corner = [50.0, -50.0 * sine, 50.0 * cosine - 50.0];
+    let near = |tip: [f64; 3]| tip.iter().zip(corner).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(
+        courses[0].path.poses().iter().any(|pose| near(pose.tip())),
+        "{:?}",
+        courses[0]
+    );
+    assert!(!path.path.poses().iter().any(|pose| near(pose.tip())));
+}

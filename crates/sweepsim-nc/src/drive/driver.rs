@@ -298,6 +298,35 @@ impl Driver {
         Ok(parts as usize)
     }
 
+    /// The positions along a straight move, to its end: those that divide it for the turn of the tool, and the corners of
+    /// a rapid in which axes turn without tip control.
+    pub fn course(
+        &mut self,
+        from: &Position,
+        to: &Position,
+        rapid: bool,
+        coordinates: Coordinates,
+    ) -> Result<Vec<Position>, NcProblem> {
+        let turns = rapid && coordinates == Coordinates::Axes && from.abc != to.abc;
+        let legs = match self.kinematics.as_deref().filter(|_| turns) {
+            Some(machine) => machine
+                .rapid_path(from, to)
+                .into_iter()
+                .skip(1)
+                .map(|point| point.position)
+                .collect(),
+            None => vec![*to],
+        };
+        let (mut course, mut last) = (Vec::new(), *from);
+        for end in legs {
+            let parts = self.division(&last, &end, coordinates)?;
+            course.extend((1..parts).map(|part| last.towards(&end, part as f64 / parts as f64)));
+            course.push(end);
+            last = end;
+        }
+        Ok(course)
+    }
+
     /// How the tool turns in a part of a move.
     pub fn turning(&mut self, from: [f64; 3], to: [f64; 3], coordinates: Coordinates) -> Result<Turning, NcProblem> {
         if from == to {

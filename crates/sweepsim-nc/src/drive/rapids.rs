@@ -5,6 +5,9 @@ use sweepsim_motion::Pose;
 use crate::machines::{Kinematics, Position, Rapid};
 use crate::model::program::{Program, ProgramPose};
 
+/// Axes whose durations differ by no larger a share arrive at the same time.
+const TOGETHER: f64 = 1e-9;
+
 /// A point of a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -71,7 +74,9 @@ impl Kinematics {
         if !(last > 0.0) {
             return Vec::new();
         }
-        let shares = durations.map(|duration| duration.map_or(1.0, |duration| duration / last));
+        // Axes that arrive together do so but for rounding.
+        let share = |duration: f64| Some(duration / last).filter(|share| *share < 1.0 - TOGETHER);
+        let shares = durations.map(|duration| duration.and_then(share).unwrap_or(1.0));
         let mut times: Vec<f64> = shares.into_iter().filter(|time| *time > 0.0 && *time < 1.0).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();

@@ -311,8 +311,8 @@ impl Track {
         }
         if let Some(xyz) = self.known().filter(|_| self.joined) {
             let from = Position::new(self.frame.point(xyz), self.abc);
-            let parts = self.driver.division(&from, &to, self.coordinates)?;
-            if parts > 1 {
+            let course = self.driver.course(&from, &to, rapid, self.coordinates)?;
+            if course.len() > 1 {
                 self.note(match self.coordinates {
                     Coordinates::Tip => {
                         "the axis turns by more than 90 degrees in one block: intermediate poses inserted"
@@ -322,14 +322,9 @@ impl Track {
                     }
                 });
             }
-            self.in_pieces(parts, |own| {
+            self.in_pieces(course.len(), |own| {
                 let mut last = from.abc;
-                for part in 1..=parts {
-                    let between = if part == parts {
-                        to
-                    } else {
-                        from.towards(&to, part as f64 / parts as f64)
-                    };
+                for between in course {
                     let turning = own.driver.turning(last, between.abc, own.coordinates)?;
                     own.push(between, Move::straight(turning), rapid)?;
                     last = between.abc;

@@ -205,6 +205,17 @@ fn dog_legs_of_a_program() {
         corners,
         [(0.0, [0.0; 3]), (0.25, [10.0, 10.0, -5.0]), (1.0, [40.0, 10.0, -5.0])]
     );
+    // Where axes turn without tip control, the poses are those of the dog-leg: C arrives after 1.5 s, X after 300 ms.
+    let turned = gcode::read("G0 X0 Y0 Z0\nX50 C90\n", &options).unwrap();
+    let at: Vec<[f64; 2]> = turned.positions.iter().map(|at| [at.xyz[0], at.abc[2]]).collect();
+    assert!(
+        at.len() > 10 && at.contains(&[50.0, 18.0]) && at.ends_with(&[[50.0, 90.0]]),
+        "{at:?}"
+    );
+    assert!(
+        at.iter().all(|[x, c]| (x - (c / 18.0 * 50.0).min(50.0)).abs() < 1e-9),
+        "{at:?}"
+    );
     // Feed moves, moves of one axis, and machines whose rapids are straight.
     assert!(
         program.dog_leg(2, 1e-3).is_none() && program.dog_leg(3, 1e-3).is_none() && program.dog_leg(0, 1e-3).is_none()

@@ -101,6 +101,7 @@ pub(crate) fn of_program(
                 break;
             }
         }
+        section.settle(on.as_deref());
         let whole = Whole {
             tool: number,
             shown,

@@ -25,8 +25,19 @@ pub(super) struct Section {
     /// The poses at which the machine finds fault.
     steps: Vec<Step>,
     last: Option<(Pose, Option<Position>)>,
+    /// A rapid that turns axes without tip control, whose course is not known, as far as its poses were added.
+    turn: Option<Turn>,
     /// What the axes of the machine do, if its bodies or limits are looked at.
     axes: Option<AxesCourse>,
+}
+
+/// A block of which some moves were added: all of it may be one dog-leg.
+struct Turn {
+    start: (Pose, Position),
+    /// Its last pose so far, and what the axes do from pose to pose.
+    end: (ProgramPose, Position),
+    step: [f64; 6],
+    moves: usize,
 }
 
 /// What is known of the move to a pose of a program.
@@ -47,6 +58,11 @@ impl Section {
     pub fn add(&mut self, machine: Option<&Arc<Kinematics>>, follows: bool, pose: &ProgramPose, known: &Known) {
         self.dwell_seconds += known.time.rest;
         let last = self.last.replace((pose.pose, known.position));
+        let turn = turn(machine.map(Arc::as_ref), last, pose, known.position.as_ref());
+        let goes_on = matches!((&self.turn, &turn), (Some(before), Some(next)) if before.goes_on(next));
+        if !goes_on {
+            self.settle(machine.map(Arc::as_ref));
+        }
         if let (true, Some(machine), Some(at)) = (follows, machine, &known.position) {
             match (&mut self.axes, &last) {
                 (Some(axes), Some((start, Some(from)))) => {
@@ -73,12 +89,32 @@ impl Section {
         }
         let other = match machine {
             None => last.and_then(|(start, _)| pose.other_course_from(&start)),
-            Some(machine) if kind == Some(Rapid::Unknown) => course_on(machine),
+            Some(machine) if kind == Some(Rapid::Unknown) && turn.is_none() => course_on(machine),
             Some(_) => None,
         };
         if let Some(course) = other {
             // Corners between two poses of the path have no fault that the path hasn't.
             let _ = self.other_courses.push(self.rapid.len() - 1, course);
+        }
+        match (&mut self.turn, turn) {
+            (Some(before), Some(next)) => (before.end, before.moves) = (next.end, before.moves + 1),
+            (None, next) => self.turn = next,
+            _ => {}
+        }
+    }
+
+    /// Adds the dog-leg that the rapid before may be which turns axes without tip control.
+    pub fn settle(&mut self, machine: Option<&Kinematics>) {
+        let (Some(turn), Some(machine)) = (self.turn.take(), machine) else {
+            return;
+        };
+        let (start, from) = &turn.start;
+        let (end, to) = &turn.end;
+        if let Some(course) = end.dog_leg_from(start, [from, to], machine, TURNING) {
+            let _ = self.other_courses.push(self.rapid.len() - 1, course);
+        }
+        if let Some(axes) = &mut self.axes {
+            axes.push_dog_leg([from, to], turn.moves);
         }
     }
 
@@ -147,6 +183,38 @@ impl Section {
             notes: Vec::new(),
             as_wear: None,
         })
+    }
+}
+
+/// The move to a pose, if it is of a rapid that turns axes without tip control, and may be a dog-leg.
+fn turn(
+    machine: Option<&Kinematics>,
+    last: Option<(Pose, Option<Position>)>,
+    pose: &ProgramPose,
+    position: Option<&Position>,
+) -> Option<Turn> {
+    let (Some((start, Some(from))), Some(to)) = (last, position) else {
+        return None;
+    };
+    let may_be = pose.rapid && pose.joined && !pose.tip_control && from.abc != to.abc;
+    if !may_be || machine?.rapid() != Rapid::Unknown {
+        return None;
+    }
+    let [a, b] = [&from, to].map(|at| [at.xyz, at.abc]);
+    Some(Turn {
+        start: (start, from),
+        end: (pose.clone(), *to),
+        step: std::array::from_fn(|k| b[k / 3][k % 3] - a[k / 3][k % 3]),
+        moves: 1,
+    })
+}
+
+impl Turn {
+    /// Whether a move is another part of the same block: it goes as far in the same direction.
+    fn goes_on(&self, next: &Self) -> bool {
+        let block = |turn: &Self| (turn.end.0.file, turn.end.0.line, turn.end.0.call);
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 * (1.0 + a.abs());
+        block(self) == block(next) && self.step.iter().zip(&next.step).all(same)
     }
 }
 

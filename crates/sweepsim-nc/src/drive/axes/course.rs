@@ -118,11 +118,13 @@ impl AxesCourse {
             share,
             bent,
         };
-        let corners = match end.rapid && bent.is_none() {
+        let kind = self.machine.rapid();
+        // One that turns without tip control may be a dog-leg from the start of its block to the end.
+        let of_block = turns && kind == Rapid::Unknown;
+        let corners = match end.rapid && bent.is_none() && !of_block {
             true => self.machine.dog_leg(from, to),
             false => Vec::new(),
         };
-        let kind = self.machine.rapid();
         let mut added = Vec::new();
         if corners.is_empty() || kind != Rapid::DogLeg {
             added.push(piece(
@@ -151,6 +153,40 @@ impl AxesCourse {
             }));
         }
         self.pieces.extend(added);
+    }
+
+    /// Adds what the last moves of the path may be, which are one rapid that turns axes without tip control: a dog-leg
+    /// between its ends.
+    pub fn push_dog_leg(&mut self, [from, to]: [&Position; 2], moves: usize) {
+        let Some(first) = self.pieces.len().checked_sub(moves) else {
+            return;
+        };
+        let (Some(begin), Some(end)) = (self.pieces.get(first), self.pieces.last()) else {
+            return;
+        };
+        let (fixed, number) = ([begin.fixed[0], end.fixed[1]], end.number);
+        let corners = self.machine.dog_leg(from, to);
+        if corners.is_empty() {
+            return;
+        }
+        let ends = std::iter::once((0.0, *from)).chain(corners).chain([(1.0, *to)]);
+        let ends: Vec<(f64, Position)> = ends.collect();
+        for (k, pair) in ends.windows(2).enumerate() {
+            let [(t, a), (u, b)] = [pair[0], pair[1]];
+            let values = |at: &Position| self.chain.values(&self.machine, at, self.tool_length);
+            let piece = Piece {
+                fixed: [&a, &b].map(|at| fixed_at(fixed, (from, to), at)),
+                from: values(&a),
+                to: values(&b),
+                number,
+                other: true,
+                joined: k > 0,
+                corner: k > 0,
+                share: [t, u],
+                bent: None,
+            };
+            self.pieces.push(piece);
+        }
     }
 
     /// Where the joints are in a move of the path, at a time from 0 to 1.
