@@ -80,7 +80,12 @@ impl WorkOffsets {
 
     /// Whether the machine knows where the active one is.
     pub fn is_placed(&self) -> bool {
-        self.placed.contains_key(&self.active) && !self.given.contains(&self.active)
+        self.placed.contains_key(&self.active) && !self.is_given()
+    }
+
+    /// Whether the user places the active one.
+    pub fn is_given(&self) -> bool {
+        self.given.contains(&self.active)
     }
 
     /// The frame of the active one.
@@ -89,7 +94,7 @@ impl WorkOffsets {
     }
 
     pub(in crate::drive) fn active_frame(&self) -> Frame {
-        match (self.given.contains(&self.active), self.is_placed()) {
+        match (self.is_given(), self.is_placed()) {
             (true, _) => Frame::Part(None),
             (_, true) => Frame::Machine,
             _ => Frame::Part(Some(self.active)),

@@ -81,6 +81,31 @@ fn a_set_up_of_its_own_is_left_out() {
     assert_eq!(tips(&placed)[6], [120.0, 10.0, 0.0]);
 }
 
+/// Only where the program sets its work offset are poses in machine coordinates.
+#[test]
+fn what_is_said_of_work_offsets() {
+    let said = |program: &Program| -> Vec<String> {
+        let notes = program.notes.iter().filter(|note| note.message.contains("work offset"));
+        // Without how often it is so.
+        notes
+            .map(|note| note.message.split(" (").next().unwrap_or_default().to_owned())
+            .collect()
+    };
+    let moves = "G0 X0 Y0 Z5\nG1 Z-1 F100\n";
+    let set = read(&format!("G10 L2 P1 X10\n{moves}"));
+    assert_eq!(
+        said(&set),
+        ["work offsets set by the program are applied: poses are in machine coordinates"]
+    );
+    let local = read(&format!("G54 G52 X10\n{moves}"));
+    assert_eq!(said(&local), ["work offsets set by the program are applied"]);
+    let given = read_with(&format!("G54 {moves}G55 {moves}"), |options| {
+        options.offsets.insert("G55".into(), [100.0, 10.0, 1.0]);
+    });
+    assert_eq!(said(&given), ["the place that is given for the work offset is applied"]);
+    assert_eq!(tips(&given)[2], [100.0, 10.0, 6.0]);
+}
+
 #[test]
 fn an_axis_that_has_not_moved_elsewhere_is_where_it_was() {
     // Only X moves in G58: Y and Z are those of G54 still. X has to be given again.

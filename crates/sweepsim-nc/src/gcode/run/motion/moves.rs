@@ -140,7 +140,9 @@ impl Reader {
             }
         }
         if self.modes.tilt.is_none() && *self.track.frame() != WorkFrame::default() {
-            self.track.note(if self.offsets.made_by_shift() {
+            self.track.note(if self.offsets.work.is_given() {
+                "the place that is given for the work offset is applied"
+            } else if self.offsets.made_by_shift() || !self.offsets.work.is_placed() {
                 "work offsets set by the program are applied"
             } else {
                 "work offsets set by the program are applied: poses are in machine coordinates"
