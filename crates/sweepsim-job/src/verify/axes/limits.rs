@@ -53,7 +53,8 @@ pub(in crate::verify) fn findings(job: &Job, report: &mut Report, texts: &mut Pr
                 (reported.file, reported.line) = (Some(file), Some(line));
             }
             reported.detail = Some(detail);
-            reported.time = Some(finding.time);
+            // Where a path begins is the start of its first move.
+            reported.time = Some(if finding.pose == 0 { 0.0 } else { finding.time });
             (reported.place, reported.depth) = (place(job, path, finding), depth);
             all.push(reported);
         }

@@ -198,3 +198,19 @@ fn ready_machines_go_home() {
     // Zero is 450 below home, the tool 100 long.
     assert_eq!((range('X'), range('Z')), ([0.0, 30.0], [-150.0, 0.0]));
 }
+
+/// A path that begins beyond a limit does so at the start of its first move, with the tip where it is then.
+#[test]
+fn a_path_begins_beyond_a_limit() {
+    let machine = "Machine(name: \"mill\", linear: [(letter: 'X', limits: (-100, 100))])";
+    let program = "G21 G90\nT1 M6\nS900 M3\nG0 X-120 Y0 Z50\nG1 X20 F500\nX130\nM30\n";
+    let outcome = request(machine, program).plan().unwrap().run(&()).unwrap();
+    // The second move of 110 mm is beyond the limit after 80 mm.
+    let expected = [(5, 0.0, -120.0), (6, 80.0 / 110.0, 100.0)];
+    assert_eq!(outcome.findings().len(), expected.len());
+    for (finding, (line, time, x)) in outcome.findings().iter().zip(expected) {
+        assert_eq!((finding.kind.as_str(), finding.line), ("limit", Some(line)));
+        assert!((finding.time.unwrap() - time).abs() < 1e-9, "{finding:?}");
+        assert!((finding.place[0] - x).abs() < 1e-6, "{finding:?}");
+    }
+}
