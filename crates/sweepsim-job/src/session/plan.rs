@@ -53,7 +53,7 @@ impl Request {
             let job = read(&self);
             (cache.join().unwrap_or_else(|panic| resume_unwind(panic)), job)
         });
-        let (mut job, found, guessed) = job?;
+        let (mut job, found, mut guessed) = job?;
         let asked = match self.cell {
             Some(side) => Some(("cell", covering(&job.grid, side))),
             None => self.cells.map(|cells| ("cells", cells)),
@@ -62,6 +62,7 @@ impl Request {
             job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
                 .map(|grid| grid.in_frame(*job.grid.frame()))
                 .map_err(|error| JobError::request(field, error.to_string()))?;
+            guessed.retain(|guess| guess.about != "grid");
         }
         job.tolerance = self.tolerance.unwrap_or(job.tolerance);
         if let Some([gouge, excess]) = self.limits {

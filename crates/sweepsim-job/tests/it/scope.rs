@@ -109,3 +109,19 @@ fn lines_equally_far_apart_are_named_together() {
     }
     assert_eq!(words::looked_at(&scope), "along z, x and y 0.4 mm apart");
 }
+
+/// Cells that are given, by their number or by their side, are not said to be guessed.
+#[test]
+fn cells_that_are_given_are_no_guess() {
+    let program = || {
+        let text = "T1 M6\nS900 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX20\nG0 Z5\nM30\n";
+        Request::from_program("slot.nc", text).tool(1, Tool::flat(3.0, 20.0).unwrap())
+    };
+    let guessed = |request: Request| -> Vec<String> {
+        let plan = request.plan().unwrap();
+        plan.guessed().iter().map(|guess| guess.about.clone()).collect()
+    };
+    assert_eq!(guessed(program()), ["stock", "grid"]);
+    assert_eq!(guessed(program().cells([20, 10])), ["stock"]);
+    assert_eq!(guessed(program().cell(2.0)), ["stock"]);
+}
