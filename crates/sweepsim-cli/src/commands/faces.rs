@@ -17,10 +17,14 @@ pub(super) fn by_face(faces: &[FaceDeviation], file: &str, line: &mut impl FnMut
     for face in listed.iter().take(FACES) {
         let [gouge, excess, mean, rms] = [face.gouge, face.excess, face.mean, face.rms].map(length);
         let area = words::measure(face.area);
-        let what = format!(
-            "{} ({}): gouge {gouge}, excess {excess}, mean {mean}, RMS {rms} mm, over {area} mm²",
-            face.face, face.kind
-        );
+        let of = format!("{} ({})", face.face, face.kind);
+        let what = if face.area > 0.0 {
+            format!("{of}: gouge {gouge}, excess {excess}, mean {mean}, RMS {rms} mm, over {area} mm²")
+        } else if deviates(face) {
+            format!("{of}: gouge at least {gouge}, excess at least {excess} mm; no mean, as it is along the dexels")
+        } else {
+            format!("{of}: not known, as it is along the dexels")
+        };
         line("face", &what);
     }
     if listed.len() > FACES {

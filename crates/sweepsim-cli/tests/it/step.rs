@@ -189,7 +189,23 @@ fn deviations_by_face_do_not_depend_on_outputs() {
     let of_solid = faces("xyz", "report,mesh");
     assert!(of_solid.as_array().is_some_and(|faces| faces.len() == 4), "{of_solid}");
     assert_eq!(faces("xyz", "report"), of_solid);
-    assert_ne!(faces("z", "report"), of_solid, "those of the lines along z");
+    let of_lines = faces("z", "report");
+    assert_ne!(of_lines, of_solid, "those of the lines along z");
+    // Of the walls x = 0 and y = 0, lines along z know nothing; of the slope, a part that is not beside its edges.
+    let area = |faces: &serde_json::Value, name: &str| {
+        let mut all = faces.as_array().unwrap().iter();
+        all.find(|face| face["face"] == name).unwrap()["area"].as_f64().unwrap()
+    };
+    for wall in ["#51", "#52"] {
+        assert!((area(&of_solid, wall) - 50.0).abs() < 1e-9, "{of_solid}");
+        assert_eq!(area(&of_lines, wall), 0.0, "{of_lines}");
+    }
+    let slope = area(&of_lines, "#53") / area(&of_solid, "#53");
+    assert!(slope > 0.2 && slope < 1.0, "{slope}");
+    let output = workdir.run_job("verify", &["--no-proof", "--directions", "z", "--only", "report"]);
+    let told = text(&output.stdout);
+    let words = "#51 (plane): gouge at least 0, excess at least 8.3722 mm; no mean, as it is along the dexels";
+    assert!(told.contains(words), "{told}");
 }
 
 /// Limits by face follow the names of the file, whatever a cache knows of the same triangles.

@@ -70,7 +70,8 @@ impl Sums {
 }
 
 /// The deviations by face, in the order of the file: of the part's points on the face that is nearest to them, and of
-/// the points of the target on their own. `target` is the surface of `faces`.
+/// the points of the target on their own. Areas, means and mean squares are of what is known. `target` is the surface
+/// of `faces`.
 pub(crate) fn by_face(
     target: &Surface<'_>,
     faces: &TargetFaces,
@@ -98,6 +99,10 @@ pub(crate) fn by_face(
         let DistanceRange { low, high } = point.distance;
         let seen = DistanceRange { low: -high, high: -low };
         own.take(seen, tolerance);
+        // A wall along dexels of one direction is anywhere between two of them: nothing is known of its mean.
+        if high - low > tolerance {
+            continue;
+        }
         own.area += point.area;
         own.mean += point.area * seen.nearest_to_0();
         own.square += point.area * seen.nearest_to_0() * seen.nearest_to_0();
