@@ -1,6 +1,6 @@
 //! How parts differ.
 
-use crate::errors::{raised, wrong};
+use crate::errors::{argument, raised};
 use crate::solids::{Solid, mesh};
 use crate::watch::watched;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ pub(crate) fn compare<'py>(
     target: Option<Solid<'_>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyBytes>)> {
-    let mut request: CompareRequest = serde_json::from_str(request).map_err(|error| wrong(py, error))?;
+    let mut request: CompareRequest = serde_json::from_str(request).map_err(|error| argument(py, request, &error))?;
     let given = |solid: Solid<'_>| match solid {
         Solid::Dexels(dexels) => Ok::<_, PyErr>(Part::Dexels(dexels.get().clone())),
         Solid::Mesh(vertices, triangles) => Ok(Part::Mesh(mesh(&vertices, &triangles)?)),

@@ -40,6 +40,27 @@ pub(crate) fn of_file(py: Python<'_>, error: &FormatError) -> PyErr {
     }
 }
 
+/// What is wrong with an argument of a request in JSON, with its name, and without places in a text that nobody has
+/// written.
+pub(crate) fn argument(py: Python<'_>, request: &str, error: &serde_json::Error) -> PyErr {
+    let at = error.column().saturating_sub(1);
+    let before = request.get(..at).unwrap_or(request);
+    let name = before
+        .rfind("\": ")
+        .and_then(|end| before[..end].rsplit('"').next())
+        .unwrap_or_default();
+    let is_no_number = ["NaN", "Infinity", "-Infinity"]
+        .iter()
+        .any(|word| request[before.len()..].starts_with(word));
+    let told = error.to_string();
+    let why = match told.split_once(" at line ") {
+        _ if is_no_number => "expected a finite number",
+        Some((why, _)) => why,
+        None => &told,
+    };
+    wrong(py, format!("{name}: {why}"))
+}
+
 fn input(py: Python<'_>, why: impl Display, file: Option<&Path>, place: Option<(usize, usize)>) -> PyErr {
     let (line, column) = place.unzip();
     let file = file.map(|file| file.display().to_string());

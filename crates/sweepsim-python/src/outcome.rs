@@ -2,10 +2,11 @@
 
 use crate::arrays::{MeshArrays, arrays};
 use crate::dexels::Dexels;
-use crate::errors::{raised, wrong};
+use crate::errors::{argument, raised, wrong};
 use crate::solids::{Solid, soup};
 use crate::tools::Tool;
 use crate::watch::watched;
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::collections::BTreeMap;
@@ -30,7 +31,7 @@ pub(crate) fn run(
     cache: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Outcome> {
-    let mut request: Request = serde_json::from_str(request).map_err(|error| wrong(py, error))?;
+    let mut request: Request = serde_json::from_str(request).map_err(|error| argument(py, request, &error))?;
     request = request.cache(cache);
     for (number, tool) in tools {
         request = request.tool(number, tool.tool.clone());
@@ -118,8 +119,8 @@ impl Outcome {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Vec<String>> {
         let outputs: Vec<Output> = serde_json::from_str(outputs).map_err(|error| wrong(py, error))?;
+        let mut folder = Folder::create(folder).map_err(|error| PyOSError::new_err(error.to_string()))?;
         let written = watched(py, progress, |monitor| {
-            let mut folder = Folder::create(folder)?;
             self.0.write_to(&mut folder, &outputs, monitor)?;
             Ok::<_, JobError>(folder.written().iter().map(|(name, _)| name.clone()).collect())
         })?;

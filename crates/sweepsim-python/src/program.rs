@@ -1,7 +1,7 @@
 //! Programs as arrays.
 
 use crate::arrays::rows;
-use crate::errors::{raised, wrong};
+use crate::errors::{argument, raised, wrong};
 use crate::watch::watched;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ pub(crate) fn read_program<'py>(
     text: Option<String>,
     dialect: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let dialect: DialectOptions = serde_json::from_str(dialect).map_err(|error| wrong(py, error))?;
+    let dialect: DialectOptions = serde_json::from_str(dialect).map_err(|error| argument(py, dialect, &error))?;
     let options = dialect.reading().map_err(|error| wrong(py, error))?;
     let read = watched(py, None, |_| match &text {
         Some(text) => read_text(text, &name, &options),

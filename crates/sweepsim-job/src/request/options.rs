@@ -64,7 +64,7 @@ impl DialectOptions {
     /// How to read a program.
     ///
     /// # Errors
-    /// What is wrong with the machine's file.
+    /// What is wrong with the machine's file, or a control or a format that does not exist.
     pub fn reading(&self) -> Result<ReadOptions, String> {
         let mut options = ReadOptions::default();
         options.lenient = self.lenient;
@@ -73,8 +73,17 @@ impl DialectOptions {
         options.offsets.clone_from(&self.offsets);
         options.in_program_units = true;
         options.within.clone_from(&self.within);
-        options.controller = self.controller.as_deref().and_then(Controller::named);
-        options.format = self.format.as_deref().and_then(Format::named);
+        let unknown = |what: &str, name: &str, names: &[&str]| {
+            format!("the {what} is {name:?}, but must be one of {}", names.join(", "))
+        };
+        if let Some(name) = &self.controller {
+            let named = Controller::named(name);
+            options.controller = Some(named.ok_or_else(|| unknown("controller", name, &Controller::NAMES))?);
+        }
+        if let Some(name) = &self.format {
+            let named = Format::named(name);
+            options.format = Some(named.ok_or_else(|| unknown("format", name, &Format::NAMES))?);
+        }
         if let Some(machine) = &self.machine {
             options.machine = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
         }

@@ -76,6 +76,9 @@ def solid(given: Solid) -> Dexels | SolidArrays:
     for what, array in (("vertices", vertices), ("triangles", triangles)):
         if array.ndim != 2 or array.shape[1] != 3:
             raise InputError(f"{what}: an array of the shape {array.shape}: expected (n, 3)")
+    finite = np.isfinite(vertices).all(axis=1)
+    if not finite.all():
+        raise InputError(f"vertices: row {int(np.argmin(finite))} is not finite")
     return vertices, triangles
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from . import _arguments, _sweepsim
+from ._errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,6 +50,10 @@ def compare(
     :param cells: the number of dexels, where neither part has a grid.
     :param tolerance: distances up to this count as 0.
     """
+    if limits is not None and not all(limit >= 0 for limit in limits):
+        raise InputError("limits: expected a number of millimetres, 0 or greater")
+    if not tolerance >= 0:
+        raise InputError("tolerance: expected a number of millimetres, 0 or greater")
     names: list[str] = []
     given: list[Dexels | SolidArrays | None] = []
     for solid, name in ((a, "a"), (b, "b")):
@@ -59,7 +64,7 @@ def compare(
         "part": names[0],
         "target": names[1],
         "tolerance": tolerance,
-        "limits": None if limits is None else {"both": limits},
+        "limits": None if limits is None else {"both": list(limits)},
         "range": None,
         "grid": {} if cells is None else {"cells": cells},
         "view": {},

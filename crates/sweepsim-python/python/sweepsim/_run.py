@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 from . import _arguments, _sweepsim
@@ -173,10 +174,10 @@ def sweep(
         rows = np.hstack([rows, np.tile([0.0, 0.0, 1.0], (len(rows), 1))])
     table = ",".join(f"(({x!r},{y!r},{z!r}),({i!r},{j!r},{k!r}))" for x, y, z, i, j, k in rows.tolist())
     corners = [f"({float(x)!r},{float(y)!r})" for x, y in (min, max)]
-    columns, lines = cells
+    columns, lines = (index(number) for number in cells)
     job = f"""Job(
     tolerance: {float(tolerance)!r},
-    grid: Grid(min: {corners[0]}, max: {corners[1]}, cells: ({int(columns)}, {int(lines)})),
+    grid: Grid(min: {corners[0]}, max: {corners[1]}, cells: ({columns}, {lines})),
     stock: Block(min: (0, 0, 0), max: (1, 1, 1)),
     paths: [Path(tool: 1, poses: [{table}])],
 )
