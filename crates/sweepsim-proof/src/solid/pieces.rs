@@ -53,11 +53,17 @@ impl Pieces {
         let mut own = Self::none();
         for piece in all {
             let first = own.corners.len() as u32;
-            match part(piece.corners, cube) {
-                Part::None => continue,
-                Part::All if piece.is_whole => {}
-                Part::All => own.corners.extend_from_slice(piece.corners),
-                Part::Some(corners) => own.corners.extend(corners),
+            match extent(piece.corners, cube) {
+                Extent::Outside => continue,
+                Extent::Inside if piece.is_whole => {}
+                Extent::Inside => own.corners.extend_from_slice(piece.corners),
+                Extent::Across => {
+                    let corners = clipped(piece.corners, cube);
+                    if corners.is_empty() {
+                        continue;
+                    }
+                    own.corners.extend(corners);
+                }
             }
             own.pieces.push(Kept {
                 triangle: piece.triangle,
@@ -101,20 +107,23 @@ impl Pieces {
     }
 }
 
-/// What of a polygon is in a cube.
-enum Part {
-    None,
-    All,
-    Some(SmallVec<[Vector3<f64>; 8]>),
-}
-
-/// Whether some of a convex polygon is in a cube.
+/// Whether some of a convex polygon is in a cube: its centre, and half of its size.
 pub(super) fn meets(corners: &[Vector3<f64>], cube: (&Vector3<f64>, f64)) -> bool {
-    !matches!(part(corners, cube), Part::None)
+    match extent(corners, cube) {
+        Extent::Outside => false,
+        Extent::Inside => true,
+        Extent::Across => !clipped(corners, cube).is_empty(),
+    }
 }
 
-/// A convex polygon clipped to a cube: its centre, and half of its size.
-fn part(corners: &[Vector3<f64>], (centre, half): (&Vector3<f64>, f64)) -> Part {
+/// Where the box around a polygon is.
+enum Extent {
+    Outside,
+    Inside,
+    Across,
+}
+
+fn extent(corners: &[Vector3<f64>], (centre, half): (&Vector3<f64>, f64)) -> Extent {
     let (mut all, mut some) = (true, true);
     for k in 0..3 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -125,12 +134,15 @@ fn part(corners: &[Vector3<f64>], (centre, half): (&Vector3<f64>, f64)) -> Part 
         some &= low <= half && high >= -half;
         all &= low >= -half && high <= half;
     }
-    if !some {
-        return Part::None;
+    match (some, all) {
+        (false, _) => Extent::Outside,
+        (_, true) => Extent::Inside,
+        _ => Extent::Across,
     }
-    if all {
-        return Part::All;
-    }
+}
+
+/// What of a convex polygon is in a cube.
+fn clipped(corners: &[Vector3<f64>], (centre, half): (&Vector3<f64>, f64)) -> SmallVec<[Vector3<f64>; 8]> {
     let mut polygon: SmallVec<[Vector3<f64>; 8]> = corners.iter().copied().collect();
     for k in 0..3 {
         for side in [1.0, -1.0] {
@@ -148,9 +160,9 @@ fn part(corners: &[Vector3<f64>], (centre, half): (&Vector3<f64>, f64)) -> Part 
             }
             polygon = kept;
             if polygon.is_empty() {
-                return Part::None;
+                return polygon;
             }
         }
     }
-    Part::Some(polygon)
+    polygon
 }
