@@ -242,8 +242,10 @@ impl Scene<'_> {
                 left.bound = distance;
                 break;
             }
-            // Where it is not known whether the limit is kept, if nothing is known better at a larger distance.
-            (left.open, left.open_count) = (found.open, found.open_count);
+            // Where it is not known whether the limit is kept.
+            if distance <= limits.depth {
+                (left.open, left.open_count) = (found.open, found.open_count);
+            }
             if let (true, Some((place, _))) = (left.open.is_empty(), left.highest) {
                 (left.open, left.open_count) = (vec![[place; 2]], 1);
             }
