@@ -202,6 +202,16 @@ fn deviations_by_face_do_not_depend_on_outputs() {
     }
     let slope = area(&of_lines, "#53") / area(&of_solid, "#53");
     assert!(slope > 0.2 && slope < 1.0, "{slope}");
+    let page = fs::read_to_string(workdir.path("out/report.html")).unwrap();
+    let row = |face: &str| {
+        page.split("<tr>")
+            .find(|row| row.contains(face))
+            .map(str::to_owned)
+            .unwrap()
+    };
+    let cells = row("<td>#51</td>");
+    assert!(cells.contains("≥ 8.372") && cells.matches('–').count() == 3, "{cells}");
+    assert!(!row("<td>#53</td>").contains('≥'), "{}", row("<td>#53</td>"));
     let output = workdir.run_job("verify", &["--no-proof", "--directions", "z", "--only", "report"]);
     let told = text(&output.stdout);
     let words = "#51 (plane): gouge at least 0, excess at least 8.3722 mm; no mean, as it is along the dexels";

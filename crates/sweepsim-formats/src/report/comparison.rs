@@ -69,7 +69,8 @@ pub struct FaceDeviation {
     /// Its colour, like `#ff8000`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
-    /// Its area.
+    /// The area of it on which the distance is known: 0 for a face along the dexels. Mean and root mean square are over
+    /// it, and if it is 0, they say nothing.
     pub area: f64,
     /// How deep the part is below it at most: what is certain.
     pub gouge: f64,

@@ -265,7 +265,22 @@ pub(super) fn faces(report: &Report) -> Option<Table> {
     };
     let row = |face: &FaceDeviation| {
         let colour = face.colour.clone().unwrap_or_else(|| "–".to_owned());
-        let numbers = [face.area, face.gouge, face.excess, face.mean, face.rms].map(number);
+        // Along the dexels, the part is anywhere between two of them: at least what is certain, if anything is.
+        let is_known = face.area > 0.0;
+        let deviates = face.gouge > 0.0 || face.excess > 0.0;
+        let largest = |value: f64| match (is_known, deviates) {
+            (true, _) => number(value),
+            (false, true) => format!("≥ {}", number(value)),
+            (false, false) => "–".to_owned(),
+        };
+        let mean = |value: f64| if is_known { number(value) } else { "–".to_owned() };
+        let numbers = [
+            number(face.area),
+            largest(face.gouge),
+            largest(face.excess),
+            mean(face.mean),
+            mean(face.rms),
+        ];
         [face.face.clone(), face.kind.clone(), colour]
             .into_iter()
             .chain(numbers)
@@ -274,7 +289,7 @@ pub(super) fn faces(report: &Report) -> Option<Table> {
     let faces = report.faces.as_ref()?;
     Some(Table {
         title: "Deviations by face of the target".to_owned(),
-        note: "In mm, along the normal: the deepest gouge and the highest excess found on each face, their mean (positive where material is left) and root mean square.".to_owned(),
+        note: "In mm, along the normal: the deepest gouge and the highest excess found on each face, their mean (positive where material is left) and root mean square, both over the area on which the distance is known. Of a face along the dexels that is none (–).".to_owned(),
         columns: ["Face", "Kind", "Colour", "Area mm²", "Gouge", "Excess", "Mean", "RMS"]
             .map(str::to_owned)
             .into(),
