@@ -170,6 +170,9 @@ pub struct Scope {
     pub extent: String,
     /// The lines, by direction.
     pub lines: Vec<ScopeLines>,
+    /// Why there was nothing to look at on the lines, if none of them meets material before the first move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unmet: Option<String>,
     /// What nobody asked for, or could not be looked at.
     pub not_looked_at: Vec<NotLookedAt>,
 }

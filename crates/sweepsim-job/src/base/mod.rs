@@ -4,6 +4,7 @@ pub(crate) mod cache;
 mod error;
 pub(crate) mod kind;
 mod memory;
+mod numbers;
 pub mod sentences;
 mod sink;
 pub mod words;

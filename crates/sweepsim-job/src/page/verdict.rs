@@ -2,7 +2,7 @@
 
 use super::program::Programs;
 use crate::base::sentences;
-use crate::base::words::{between, counted, found, is_everywhere, looked_at, proven, setup_name};
+use crate::base::words::{between, counted, found, is_everywhere, looked_at, proven, setup_name, unmet};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -18,9 +18,12 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
         (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Fail) => {
             Verdict::bad("May not be run: the part deviates from its target.")
         }
-        (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Undecided) => {
-            Verdict::partial("Not decided: nothing was found that does harm, but not everything asked for is proven.")
-        }
+        (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Undecided) => match unmet(report) {
+            Some(why) => Verdict::bad(format!("Not decided: {why}.")),
+            None => Verdict::partial(
+                "Not decided: nothing was found that does harm, but not everything asked for is proven.",
+            ),
+        },
         (0, 0) if open > 0 => Verdict::bad("Not decided: nothing was found, but some lines are unresolved."),
         (0, 0)
             if report

@@ -31,6 +31,11 @@ const KINDS: [(&str, Option<Need>); 9] = [
     ),
 ];
 
+/// What needs no stock.
+const WITHOUT_STOCK: [&str; 3] = ["fixture", "machine", "limit"];
+/// What all others need.
+const ON_LINES: &str = "stock on the lines of the dexels";
+
 /// Whether a job has it, and what it is.
 type Need = (fn(&Job) -> bool, &'static str);
 
@@ -67,6 +72,7 @@ impl Outcome {
         all.seconds = plan.began.elapsed().as_secs_f64();
         let stopped = plan.request().judging.first && !self.findings().is_empty();
         for (kind, need) in KINDS {
+            let is_unmet = words::unmet(report).is_some() && !WITHOUT_STOCK.contains(&kind);
             let found = found(kind, report, &names);
             let missing = report.scope.iter().flat_map(|scope| &scope.not_looked_at);
             let missing: Vec<_> = missing
@@ -76,6 +82,7 @@ impl Outcome {
             let needs = match need {
                 _ if stopped => Some("a run without --first"),
                 Some((has, needs)) if !has(plan.job()) => Some(needs),
+                _ if is_unmet && !is_stated(kind, report) => Some(ON_LINES),
                 _ => whole.map(|missing| missing.needs.as_str()),
             };
             all.cases.push(match needs {
@@ -89,6 +96,11 @@ impl Outcome {
         if !written.certified {
             let message =
                 "Some dexels are unresolved: what happens on these lines is not known. The report lists them.";
+            let open = Annotation::new("unresolved", AnnotationLevel::Open, message, names.program());
+            all.cases.push(CiCase::looked_at("unresolved", vec![open]));
+        }
+        if let Some(why) = words::unmet(report) {
+            let message = words::capital(&why);
             let open = Annotation::new("unresolved", AnnotationLevel::Open, message, names.program());
             all.cases.push(CiCase::looked_at("unresolved", vec![open]));
         }
@@ -211,6 +223,15 @@ fn kind_of(statement: &Statement) -> &str {
         "holder" => "collision",
         about => about,
     }
+}
+
+/// Whether there is a statement about a kind of harm: lines or not, it was looked at.
+fn is_stated(kind: &str, report: &Report) -> bool {
+    report
+        .statements
+        .iter()
+        .flatten()
+        .any(|statement| kind_of(statement) == kind)
 }
 
 /// The first of many, and how many more there are. What does harm comes first.

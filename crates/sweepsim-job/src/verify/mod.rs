@@ -28,7 +28,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use sweepsim::verify::{AreaShare, Deviations, Judgement, Look, Target, TileDeviation, deviations_along, joined};
 use sweepsim_dexel::{Dexels, End, Grid, Source};
-use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
+use sweepsim_formats::{MoveSummary, Report, ReportedDexel, Verdict};
 
 /// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
 const PLOTTED: usize = 1000;
@@ -230,7 +230,12 @@ impl Before {
         let distance = target.as_ref().map(Target::distance);
         let certified = findings::describe(report, session, &done, found.as_ref(), distance)?;
         proof::compare_registers(session, report)?;
-        report.scope = Some(scope::scope(session, sets));
+        let mut scope = scope::scope(session, sets);
+        scope.unmet = scope::unmet(session, &stock, sets)?;
+        if scope.unmet.is_some() && report.verdict == Some(Verdict::Pass) {
+            report.verdict = Some(Verdict::Undecided);
+        }
+        report.scope = Some(scope);
         axes::describe(report, session);
         let mut looks = looks.into_iter();
         let along_z = looks.next();

@@ -1,9 +1,12 @@
 //! What a verdict is about, and what it is not.
 
 use super::asked::material::is_guessed;
+use crate::base::JobError;
 use crate::request::Input;
 use crate::session::Session;
 use crate::shards::{Purpose, TilingSet};
+use crate::warnings::is_beside;
+use sweepsim_dexel::Dexels;
 use sweepsim_formats::{NotLookedAt, Scope, ScopeLines};
 
 /// What was looked at on these tiles, and what was not.
@@ -21,6 +24,26 @@ pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
         .collect();
     scope.not_looked_at = not_looked_at(session);
     scope
+}
+
+/// Why nothing was judged, if no line meets material before the first move. Known: the stock along z.
+pub(super) fn unmet(session: Session, along_z: &Dexels, sets: &[TilingSet]) -> Result<Option<String>, JobError> {
+    let is_met = |stock: &Dexels| stock.iter().any(|(_, line)| !line.is_empty());
+    if is_met(along_z) {
+        return Ok(None);
+    }
+    let judged = sets.iter().filter(|set| matches!(set.purpose, Purpose::Judge { .. }));
+    for set in judged.skip(1) {
+        let stock = set.whole_stock(&session.job.stock);
+        if is_met(&stock.map_err(|error| session.failure(format!("stock: {error}")))?) {
+            return Ok(None);
+        }
+    }
+    let why = match is_beside(session.job) {
+        true => "none of the stock is on the grid",
+        false => "no line of the dexels meets the stock",
+    };
+    Ok(Some(why.to_owned()))
 }
 
 /// Whether all that is looked at on the lines is looked at between them as well.

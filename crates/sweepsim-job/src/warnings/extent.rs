@@ -16,6 +16,14 @@ pub fn is_covered(job: &Job) -> bool {
     uncovered(job).is_none()
 }
 
+/// Whether none of the stock is on the grid.
+pub(crate) fn is_beside(job: &Job) -> bool {
+    let grid = &job.grid;
+    let (min, max) = (grid.min(), grid.max());
+    let beyond = |[low, high]: Corners| (0..2).any(|k| high[k] <= min[k] || low[k] >= max[k]);
+    within(&job.stock, grid.frame()).is_some_and(beyond)
+}
+
 /// Stock beside the grid: it is neither cut nor measured.
 pub(super) fn uncovered(job: &Job) -> Option<String> {
     let grid = &job.grid;
@@ -27,7 +35,6 @@ pub(super) fn uncovered(job: &Job) -> Option<String> {
         of_cells.max(ROUNDING * (high[k] - low[k]))
     };
     let out = |k: usize| low[k] < min[k] - slack(k) || high[k] > max[k] + slack(k);
-    let beyond = |k: usize| high[k] <= min[k] || low[k] >= max[k];
     if !out(0) && !out(1) {
         return None;
     }
@@ -40,7 +47,7 @@ pub(super) fn uncovered(job: &Job) -> Option<String> {
         )
     });
     let extents: Vec<String> = extents.collect();
-    let what = if beyond(0) || beyond(1) {
+    let what = if is_beside(job) {
         "none of the stock is on the grid"
     } else {
         "the grid does not cover the stock: what lies beside it is neither cut nor measured"

@@ -10,6 +10,7 @@ mod unused;
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::Job;
 
+pub(crate) use extent::is_beside;
 pub use extent::is_covered;
 pub(crate) use unused::Use;
 

@@ -125,3 +125,59 @@ fn cells_that_are_given_are_no_guess() {
     assert_eq!(guessed(program().cells([20, 10])), ["stock"]);
     assert_eq!(guessed(program().cell(2.0)), ["stock"]);
 }
+
+/// Of a program that is judged on no material, nothing is decided: whether the grid is beside the stock, or the stock
+/// between the lines.
+#[test]
+fn without_material_on_any_line_nothing_is_decided() {
+    let along = |[from, to]: [f64; 2], stock: &str, directions| {
+        let job = format!(
+            "Job(
+                grid: Grid(min: ({from}, 0), max: ({to}, 40), cells: (20, 40)),
+                stock: {stock},
+                tools: {{1: Flat(radius: 5, length: 30)}},
+                paths: [Path(tool: 1, moves: [Start(((-8, 20, -4), (0, 0, 1))), Line(((68, 20, -4), (0, 0, 1)))])],
+            )"
+        );
+        run(Request::from_job("slot.ron", job).directions(directions))
+    };
+    let block = "Block(min: (0, 0, -10), max: (60, 40, 0))";
+    let plate = "Block(min: (30.6, 0, -10), max: (30.9, 40, 0))";
+    let told = |outcome: &Outcome| words::answer(outcome.report()).unwrap();
+    let beside = along([100.0, 120.0], block, Directions::Z);
+    let between = along([20.0, 40.0], plate, Directions::Z);
+    for (outcome, why) in [
+        (&beside, "none of the stock is on the grid"),
+        (&between, "no line of the dexels meets the stock"),
+    ] {
+        assert_eq!(outcome.verdict(), Some(Verdict::Undecided));
+        let said = told(outcome);
+        assert_eq!(said, format!("UNDECIDED: nothing was looked at, since {why}"));
+        let page = page(outcome);
+        assert!(
+            page.contains(&format!("Not decided: nothing was looked at, since {why}.")),
+            "{why}"
+        );
+        let mut made = Memory::default();
+        let written = outcome.write_to(&mut made, &[], &()).unwrap();
+        let ci = outcome.ci(&written, std::path::Path::new(""));
+        let needs = |kind: &str| ci.cases.iter().find(|case| case.name == kind).unwrap().needs.is_some();
+        assert!(needs("rapid") && needs("collision"), "{:?}", ci.cases);
+        let open = ci.cases.iter().flat_map(|case| &case.annotations);
+        let open: Vec<_> = open.map(|one| (&one.rule[..], &one.message[..])).collect();
+        assert_eq!(
+            open,
+            [(
+                "unresolved",
+                &words::capital(&format!("nothing was looked at, since {why}"))[..]
+            )]
+        );
+    }
+    // On lines along x there is some of the plate, and of the block on a part of the grid.
+    for outcome in [
+        along([20.0, 40.0], plate, Directions::Xyz),
+        along([50.0, 70.0], block, Directions::Z),
+    ] {
+        assert_eq!(outcome.verdict(), Some(Verdict::Pass), "{}", told(&outcome));
+    }
+}

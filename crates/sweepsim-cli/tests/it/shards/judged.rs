@@ -239,3 +239,19 @@ fn pieces_of_verify_are_checked() {
     let merged = folder.run(&["merge", "p", "--out", "merged"]);
     assert_eq!(merged.status.code(), Some(1), "{}", text(&merged.stderr));
 }
+
+/// Shards that meet no material are as undecided as one run is.
+#[test]
+fn shards_without_material_decide_nothing() {
+    let folder = Workdir::new(
+        "Job(
+    grid: Grid(min: (50, -12), max: (80, 12), cells: (30, 24)),
+    stock: Block(min: (-15, -12, 0), max: (15, 12, 8)),
+    tools: { 1: Flat(radius: 2.5, length: 9) },
+    paths: [Path(file: \"part.nc\")],
+)",
+    );
+    fs::write(folder.path("part.nc"), PROGRAM).unwrap();
+    let report = compare(&folder, &["--no-proof", "--only", "report"], &[2], 3);
+    assert_eq!(report.verdict, Some(sweepsim_formats::Verdict::Undecided));
+}
