@@ -215,6 +215,10 @@ impl Drafter<'_> {
             return None;
         }
         let longer = (high[0] - low[0]).max(high[1] - low[1]);
+        // A stock without a size is refused later.
+        if !(longer > 0.0 && longer.is_finite()) {
+            return None;
+        }
         let own = self.provided.tools.values();
         let own = own.map(|tool| 2.0 * tool.bounding_cylinder().radius);
         let diameters = tools.values().filter_map(|tool| tool.diameter).chain(own);

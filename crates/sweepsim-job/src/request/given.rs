@@ -1,5 +1,6 @@
 //! What a request has in memory instead of in files.
 
+use crate::base::JobError;
 use serde::ser::Error as _;
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -37,6 +38,30 @@ impl Input {
         match self {
             Self::File(name) | Self::Program { name, .. } | Self::Job { name, .. } => name,
         }
+    }
+}
+
+/// Triangles of a stock with a coordinate that is no number: nothing could be guessed from their box.
+pub(super) fn check_corners(stock: &Stock) -> Result<(), JobError> {
+    match stock {
+        Stock::Mesh(soup) => {
+            let corners = soup.triangles.iter().flatten().enumerate();
+            let all = corners.flat_map(|(n, corner)| corner.iter().zip(["x", "y", "z"]).map(move |own| (n, own)));
+            let Some((n, (value, axis))) = all.into_iter().find(|(_, (value, _))| !value.is_finite()) else {
+                return Ok(());
+            };
+            let (triangle, corner) = (n / 3, n % 3);
+            let why = format!(
+                "corner {corner} of triangle {triangle} of the mesh has a coordinate that is not finite: {axis} = {value}"
+            );
+            Err(JobError::request("stock", why))
+        }
+        Stock::Union(parts) | Stock::Intersection(parts) => parts.iter().try_for_each(check_corners),
+        Stock::Difference(whole, parts) => {
+            check_corners(whole)?;
+            parts.iter().try_for_each(check_corners)
+        }
+        _ => Ok(()),
     }
 }
 

@@ -369,6 +369,7 @@ impl Request {
                 return Err(JobError::request(field, "expected a positive number of millimetres"));
             }
         }
+        self.given.stock.as_ref().map_or(Ok(()), given::check_corners)?;
         let [gouge, excess] = self.limits.unwrap_or_default();
         let judging = &self.judging;
         let mut lengths = vec![

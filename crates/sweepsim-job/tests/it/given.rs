@@ -90,3 +90,36 @@ fn a_job_stays_within_its_folder() {
     assert_eq!(error.position().map(|position| position.line), Some(1));
     assert!(error.to_string().contains("expected a file there"), "{error}");
 }
+
+#[test]
+fn a_stock_with_a_corner_that_is_nowhere_is_an_error() {
+    let with = |triangle: usize, corner: usize, axis: usize, value: f64| {
+        let mut soup = TriangleSoup::block([0.0, 0.0, -10.0], [40.0, 20.0, 0.0]);
+        soup.triangles[triangle][corner][axis] = value;
+        facing()
+            .stock(Stock::Mesh(soup))
+            .plan()
+            .map(drop)
+            .unwrap_err()
+            .to_string()
+    };
+    let why = "a coordinate that is not finite";
+    assert_eq!(
+        with(3, 1, 0, f64::NAN),
+        format!("stock: corner 1 of triangle 3 of the mesh has {why}: x = NaN")
+    );
+    assert_eq!(
+        with(0, 2, 2, f64::INFINITY),
+        format!("stock: corner 2 of triangle 0 of the mesh has {why}: z = inf")
+    );
+    // Other solids are refused where they are made into dexels, if not before.
+    let block = |min: [f64; 3]| {
+        let block = Stock::Block {
+            min,
+            max: [40.0, 20.0, 0.0],
+        };
+        let plan = facing().stock(block).plan();
+        plan.and_then(|plan| plan.run(&()).map(drop))
+    };
+    assert!(block([f64::NAN, 0.0, -10.0]).is_err() && block([50.0, 0.0, -10.0]).is_err());
+}
