@@ -309,3 +309,32 @@ fn targets_beyond_the_grid_are_named() {
     assert!(longer(65.0).contains(note), "{}", longer(65.0));
     assert!(!longer(60.0).contains("beyond the grid"));
 }
+
+/// A depth and a height within the limits of their own region, but not within the smallest: what is open, and why.
+#[test]
+fn limits_that_differ_are_named_where_a_statement_is_open() {
+    let job = "Job(
+        grid: Grid(cells: (60, 40)),
+        stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
+        tools: {1: Flat(radius: 5, length: 30)},
+        paths: [Path(tool: 1, moves: [Start(((-8, 20, -4), (0, 0, 1))), Line(((68, 20, -4), (0, 0, 1)))])],
+        limits: Limits(gouge: 0.02, excess: 0.02, regions: [
+            Region(within: Block(min: (-1, 14, -10), max: (61, 26, 1)), gouge: 0.25, excess: 0.25),
+        ]),
+    )";
+    for (about, floor, words) in [("gouge", -3.9, " mm deep"), ("excess", -4.1, " mm high")] {
+        let request = Request::from_job("slot.ron", job).target(slotted([15.0, 25.0], floor));
+        let outcome = request.plan().unwrap().run(&()).unwrap();
+        assert_eq!(outcome.verdict(), Some(Verdict::Undecided));
+        let mut all = outcome.report().statements.iter().flatten();
+        let statement = all.find(|statement| statement.about == about).unwrap();
+        assert_eq!(statement.state, StatementState::Open);
+        let told = sweepsim_job::words::proven(statement);
+        let limits = "the limits differ from region to region, from 0.02 to 0.25 mm";
+        assert!(told.contains(limits) && told.contains(words), "{told}");
+        assert!(
+            told.contains("only the lines tell whether that is within its own region's limit"),
+            "{told}"
+        );
+    }
+}

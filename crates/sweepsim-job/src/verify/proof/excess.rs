@@ -77,8 +77,7 @@ pub(super) fn excess(
             let loose = cutters.iter().filter(|(_, solids)| solids.iter().all(Convex::is_loose));
             let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
             if known > least {
-                let text = "the limits differ from region to region, and the height is between them";
-                statement.reason = Some(text.to_owned());
+                statement.reason = Some(super::between_limits([least, most], known, "high"));
             } else if !loose.is_empty() {
                 let tools = loose.join(", ");
                 let text = format!("it is not known what tools of free-form patches have removed for certain: {tools}");

@@ -18,8 +18,8 @@ use super::asked::solids;
 use super::asked::{Asked, AskedAll, limits};
 use super::texts::ProgramTexts;
 use super::work;
-use crate::base::JobError;
 use crate::base::cache::Key;
+use crate::base::{JobError, words};
 use crate::session::Session;
 use std::sync::OnceLock;
 use sweepsim_check::{Claim, Measure as Measured, Question, Scene};
@@ -224,13 +224,22 @@ fn gouges(
     let findings = deep(job, texts, &mut statement, &found, most);
     let between = statement.state == StatementState::Open && statement.enclosure[0] > least;
     if between {
-        statement.reason = Some("the limits differ from region to region, and the depth is between them".to_owned());
+        statement.reason = Some(between_limits([least, most], statement.enclosure[0], "deep"));
     }
     Ok(Proven {
         statement,
         findings,
         claims,
     })
+}
+
+/// Why a statement about the smallest of the limits is open of which it is known that it does not keep that one.
+fn between_limits([least, most]: [f64; 2], known: f64, how: &str) -> String {
+    let [least, most, known] = [least, most, known].map(words::length);
+    format!(
+        "the limits differ from region to region, from {least} to {most} mm; it is {known} mm {how}, and only the lines \
+         tell whether that is within its own region's limit"
+    )
 }
 
 /// What is known of depths, in a statement about them; and the moves that go beyond `most`, if it is refuted by that.
