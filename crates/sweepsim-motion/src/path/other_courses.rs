@@ -4,15 +4,17 @@ use super::{PackedPoses, Path, PathError};
 use crate::packed::PackedRows;
 use crate::pose::Pose;
 use nalgebra::Matrix3;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// Another course that a move may take: a rapid on a machine that may let each axis arrive in its own time.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OtherCourse {
-    /// The move of the path.
+    /// The move of the path; of several moves that it is in place of, the last one.
     pub number: usize,
-    /// The course, from the move's start to its end.
+    /// The first of these moves.
+    pub first: usize,
+    /// The course, from the start of the first move to the end of the last.
     pub path: Path,
     /// When each move of the course ends, as a fraction of the whole, from 0 to 1.
     pub times: Vec<f64>,
@@ -29,12 +31,19 @@ pub struct OtherCourse {
 /// let course = courses.of(0..5).next().ok_or("none")?;
 /// assert_eq!((course.number, course.path.moves(), course.times), (2, 2, vec![0.2, 1.0]));
 /// assert_eq!(courses.of(3..5).count(), 0);
+/// // One for three moves: that of the last one.
+/// courses.push_for(4..=6, [(0.0, at(50.0, 10.0)?), (1.0, at(0.0, 0.0)?)])?;
+/// let course = courses.of(6..7).next().ok_or("none")?;
+/// assert_eq!((course.first, course.number), (4, 6));
+/// assert_eq!([1, 2, 3, 4, 5, 6, 7].map(|number| courses.has(number)), [false, true, false, true, true, true, false]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OtherCourses {
     /// The moves, in ascending order, and the number of poses up to the end of each one's course.
     moves: Vec<(u32, u32)>,
+    /// The first moves of those courses that are in place of several, by the last ones, in ascending order.
+    several: Vec<(u32, u32)>,
     poses: PackedPoses,
     /// Of each pose.
     times: PackedRows<1>,
@@ -64,6 +73,36 @@ impl OtherCourses {
         Ok(())
     }
 
+    /// The same of a course in place of several moves, as of the chords of one block.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    ///
+    /// # Panics
+    /// As [`push`](Self::push).
+    pub fn push_for(
+        &mut self,
+        moves: RangeInclusive<usize>,
+        course: impl IntoIterator<Item = (f64, Pose)>,
+    ) -> Result<(), PathError> {
+        let (first, last) = moves.into_inner();
+        self.push(last, course)?;
+        if first < last {
+            self.several.push((last as u32, first as u32));
+        }
+        Ok(())
+    }
+
+    /// Whether there is another course in place of a move, or of several of which it is one.
+    #[must_use]
+    pub fn has(&self, number: usize) -> bool {
+        let from = |all: &[(u32, u32)]| all.partition_point(|(last, _)| (*last as usize) < number);
+        let own = self.moves.get(from(&self.moves));
+        let block = self.several.get(from(&self.several));
+        own.is_some_and(|(last, _)| *last as usize == number)
+            || block.is_some_and(|(_, first)| *first as usize <= number)
+    }
+
     /// The number of courses.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -88,8 +127,10 @@ impl OtherCourses {
         let begin = index.checked_sub(1).map_or(0, |before| self.moves[before].1);
         let (begin, end) = (begin as usize, end as usize);
         let poses = self.poses.range(begin..end).collect();
+        let several = self.several.binary_search_by_key(&number, |(last, _)| *last);
         OtherCourse {
             number: number as usize,
+            first: several.map_or(number, |found| self.several[found].1) as usize,
             path: Path::new(poses).expect("checked when it was added"),
             times: self.times.range(begin + 1..end).map(|[time]| time).collect(),
         }
@@ -104,7 +145,7 @@ impl OtherCourses {
         for course in self.of(0..usize::MAX) {
             let path = course.path.moved(turn, by)?;
             let times = std::iter::once(0.0).chain(course.times);
-            all.push(course.number, times.zip(path.poses().iter().copied()))?;
+            all.push_for(course.first..=course.number, times.zip(path.poses().iter().copied()))?;
         }
         Ok(all)
     }

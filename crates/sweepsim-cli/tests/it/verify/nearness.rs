@@ -153,3 +153,34 @@ fn clearances_of_holders() {
     let bad = workdir.bad(&["verify", "job.ron", "--out", "out"]);
     assert!(bad.contains("clearance is -1, but must be 0 or greater"), "{bad}");
 }
+
+/// A rapid that turns a table is divided into chords: what happens on any of them does so if the rapid is straight.
+#[test]
+fn all_chords_of_a_rapid_may_be_on_another_course() {
+    // The radius of the tip goes from 50 to 10 mm while the table turns, or within 14 degrees.
+    let job = r#"Job(
+        grid: Grid(min: (-60, -60), max: (60, 60), cells: (60, 60)),
+        stock: Block(min: (-60, -60, -10), max: (60, 60, 0)),
+        tools: { 1: Flat(radius: 2, length: 30) },
+        fixtures: [Cylinder(base: (21.2, 21.2, 0), axis: (0, 0, 1), radius: 1, height: 20),
+            Cylinder(base: (21.2, -21.2, 0), axis: (0, 0, 1), radius: 1, height: 20)],
+        paths: [Path(file: "part.nc", machine: "mill.ron")],
+    )"#;
+    let machine = "Machine(name: \"mill\", linear: [(letter: 'X', speed: 10000)], \
+                   table: [(letter: 'C', axis: (0, 0, 1), speed: 3600)])";
+    let workdir = Workdir::new(job);
+    fs::write(workdir.path("mill.ron"), machine).expect("a file");
+    fs::write(
+        workdir.path("part.nc"),
+        "G21 G90\nT1 M6\nS900 M3\nG0 X50 Y0 Z5\nX10 C90\nM30\n",
+    )
+    .expect("a file");
+    let output = workdir.run_job("verify", &["--no-proof", "--only", "report"]);
+    let report = fs::read(workdir.path("out/report.json")).expect("a report");
+    let report: Report = serde_json::from_slice(&report).expect("a report");
+    let findings = report.findings.expect("findings");
+    assert!(!findings.is_empty(), "{}", text(&output.stdout));
+    for finding in &findings {
+        assert_eq!(finding.courses.as_deref(), Some("straight"), "{}", text(&output.stdout));
+    }
+}

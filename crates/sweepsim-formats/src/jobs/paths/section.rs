@@ -111,7 +111,8 @@ impl Section {
         let (start, from) = &turn.start;
         let (end, to) = &turn.end;
         if let Some(course) = end.dog_leg_from(start, [from, to], machine, TURNING) {
-            let _ = self.other_courses.push(self.rapid.len() - 1, course);
+            let end = self.rapid.len();
+            let _ = self.other_courses.push_for(end - turn.moves..=end - 1, course);
         }
         if let Some(axes) = &mut self.axes {
             axes.push_dog_leg([from, to], turn.moves);

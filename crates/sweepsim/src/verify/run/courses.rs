@@ -114,8 +114,17 @@ impl Work<'_> {
         moves: Range<usize>,
         seen: usize,
     ) -> Result<(), SweepError> {
-        let courses = toolpath.other_courses.into_iter();
-        for course in courses.flat_map(|courses| courses.of(moves.clone())) {
+        let Some(courses) = toolpath.other_courses else {
+            return Ok(());
+        };
+        for own in &mut self.done.findings[seen..] {
+            // Gouges are not looked for on other courses.
+            let own = &mut own.finding;
+            if own.kind != FindingKind::Gouge && courses.has(own.number) {
+                own.courses = Some(RapidCourses::Own);
+            }
+        }
+        for course in courses.of(moves.clone()) {
             let (mut found, mut unresolved) = (Vec::new(), Vec::new());
             let solids = solids.along(&course.path, self)?;
             for (body, probe, itself) in solids.probes() {
@@ -191,13 +200,6 @@ impl Work<'_> {
 
     /// Adds what is found on the other course of a move.
     fn merge(&mut self, number: usize, seen: usize, found: Vec<TileFinding>) {
-        for own in &mut self.done.findings[seen..] {
-            // Gouges are not looked for on other courses.
-            let own = &mut own.finding;
-            if own.number == number && own.kind != FindingKind::Gouge {
-                own.courses = Some(RapidCourses::Own);
-            }
-        }
         for mut other in found {
             other.finding.courses = Some(RapidCourses::Other);
             let harm = |of: &Finding| (of.number, of.kind, of.body);
