@@ -341,6 +341,8 @@ impl Scene<'_> {
                     around,
                 };
                 search.look(self.patches.get(*number).clone(), each);
+                // However finely it was divided, a patch is one place.
+                search.found.open_count = search.found.open_count.min(1);
                 (recent, around) = (search.recent, search.around);
                 all.push(search.found);
             }

@@ -313,7 +313,11 @@ fn what_is_undecided_has_a_place() {
             assert_eq!((left.open.len(), left.open_count), (0, 0), "{share}");
             decided += 1;
         } else {
-            assert!(!left.open.is_empty() && left.open_count > 0, "{share}: {left:?}");
+            // Of some five hundred parts of the surface, however finely they were divided.
+            assert!(
+                !left.open.is_empty() && (1..128).contains(&left.open_count),
+                "{share}: {left:?}"
+            );
             open += 1;
         }
     }
