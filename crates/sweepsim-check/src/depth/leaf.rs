@@ -204,7 +204,8 @@ impl Near<'_> {
     }
 }
 
-/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet up to three of them exactly, and all others too.
+/// About the shortest `w` with `⟨nᵢ, w⟩ ≥ dᵢ`: of those that meet up to three of them exactly, and all others
+/// too, but for `off`, in parts of the largest `dᵢ`. Whoever asks checks what is found.
 fn shortest(normals: &[V3], needs: &[f64], off: f64) -> Option<V3> {
     let size = needs.iter().fold(0.0_f64, |size, need| size.max(need.abs()));
     let mut best: Option<V3> = None;

@@ -41,13 +41,13 @@ impl Input {
     }
 }
 
-/// Triangles of a stock with a coordinate that is no number: nothing could be guessed from their box.
+/// Whether all corners of a stock's triangles are finite: nothing could be guessed from their box otherwise.
 pub(super) fn check_corners(stock: &Stock) -> Result<(), JobError> {
     match stock {
         Stock::Mesh(soup) => {
             let corners = soup.triangles.iter().flatten().enumerate();
-            let all = corners.flat_map(|(n, corner)| corner.iter().zip(["x", "y", "z"]).map(move |own| (n, own)));
-            let Some((n, (value, axis))) = all.into_iter().find(|(_, (value, _))| !value.is_finite()) else {
+            let mut all = corners.flat_map(|(n, corner)| corner.iter().zip(["x", "y", "z"]).map(move |own| (n, own)));
+            let Some((n, (value, axis))) = all.find(|(_, (value, _))| !value.is_finite()) else {
                 return Ok(());
             };
             let (triangle, corner) = (n / 3, n % 3);

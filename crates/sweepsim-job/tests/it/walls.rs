@@ -199,17 +199,22 @@ fn a_rib_that_is_milled_away_is_found() {
     assert_eq!(proven(&outcome, 0.05, LIMIT), StatementState::Refuted);
 }
 
-#[test]
-fn the_deepest_place_is_as_deep_as_is_said_where_limits_differ() {
-    let job = "Job(
+/// A slot 10 mm wide and 4 mm deep, with limits of 0.02 mm but in a region.
+fn slot_with(region: &str) -> String {
+    format!(
+        "Job(
         grid: Grid(cells: (60, 40)),
         stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
-        tools: {1: Flat(radius: 5, length: 30)},
+        tools: {{1: Flat(radius: 5, length: 30)}},
         paths: [Path(tool: 1, moves: [Start(((-8, 20, -4), (0, 0, 1))), Line(((68, 20, -4), (0, 0, 1)))])],
-        limits: Limits(gouge: 0.02, excess: 0.02, regions: [
-            Region(within: Block(min: (0, 0, -10), max: (30, 40, 0)), gouge: 0.2, excess: 0.02),
-        ]),
-    )";
+        limits: Limits(gouge: 0.02, excess: 0.02, regions: [{region}]),
+    )"
+    )
+}
+
+#[test]
+fn the_deepest_place_is_as_deep_as_is_said_where_limits_differ() {
+    let job = slot_with("Region(within: Block(min: (0, 0, -10), max: (30, 40, 0)), gouge: 0.2, excess: 0.02)");
     let request = Request::from_job("slot.ron", job).target(slotted([15.0, 25.0], -3.9));
     let outcome = request.plan().unwrap().run(&()).unwrap();
     let statement = &outcome.report().statements.as_ref().unwrap()[0];
@@ -313,17 +318,9 @@ fn targets_beyond_the_grid_are_named() {
 /// A depth and a height within the limits of their own region, but not within the smallest: what is open, and why.
 #[test]
 fn limits_that_differ_are_named_where_a_statement_is_open() {
-    let job = "Job(
-        grid: Grid(cells: (60, 40)),
-        stock: Block(min: (0, 0, -10), max: (60, 40, 0)),
-        tools: {1: Flat(radius: 5, length: 30)},
-        paths: [Path(tool: 1, moves: [Start(((-8, 20, -4), (0, 0, 1))), Line(((68, 20, -4), (0, 0, 1)))])],
-        limits: Limits(gouge: 0.02, excess: 0.02, regions: [
-            Region(within: Block(min: (-1, 14, -10), max: (61, 26, 1)), gouge: 0.25, excess: 0.25),
-        ]),
-    )";
+    let job = slot_with("Region(within: Block(min: (-1, 14, -10), max: (61, 26, 1)), gouge: 0.25, excess: 0.25)");
     for (about, floor, words) in [("gouge", -3.9, " mm deep"), ("excess", -4.1, " mm high")] {
-        let request = Request::from_job("slot.ron", job).target(slotted([15.0, 25.0], floor));
+        let request = Request::from_job("slot.ron", job.as_str()).target(slotted([15.0, 25.0], floor));
         let outcome = request.plan().unwrap().run(&()).unwrap();
         assert_eq!(outcome.verdict(), Some(Verdict::Undecided));
         let mut all = outcome.report().statements.iter().flatten();

@@ -53,7 +53,9 @@ impl Asking<'_> {
                 return None;
             }
             let found = look(root, part);
-            monitor.advance(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            // Some may be looked at again.
+            let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+            monitor.advance(done.min(total), total);
             Some(found)
         };
         let known = |parts: &[Part]| {

@@ -2,7 +2,7 @@
 
 use crate::certificates::{certified, check_height};
 use crate::scenes::{radius_at, target, tool};
-use crate::walls::{LIFT, extruded, slot};
+use crate::walls::{LIFT, TIPS, extruded, slot};
 use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
@@ -34,13 +34,6 @@ fn left_of((x, target): ([f64; 2], &TriangleSoup), tool: &Tool, tips: &[[f64; 3]
     check_height((target, &stock), (tool, &cutter), limits, &left);
     left
 }
-
-const TIPS: [[f64; 3]; 4] = [
-    [-40.0, 0.0, 15.0],
-    [-40.0, 0.0, 2.0],
-    [40.0, 0.0, 2.0],
-    [40.0, 0.0, 15.0],
-];
 
 fn check(target: &TriangleSoup, truth: f64) {
     let tool = Tool::flat(5.0, 30.0).expect("a tool");

@@ -67,17 +67,19 @@ pub(crate) fn slot(left: f64, right: f64, floor: f64) -> TriangleSoup {
     extruded(&profile, [-30.0, 30.0])
 }
 
+/// Where the tip goes along a slot.
+pub(crate) const TIPS: [[f64; 3]; 4] = [
+    [-40.0, 0.0, 15.0],
+    [-40.0, 0.0, 2.0],
+    [40.0, 0.0, 2.0],
+    [40.0, 0.0, 15.0],
+];
+
 /// A slot along x, and its tool.
 pub(crate) fn cut() -> (Tool, Path) {
     let tool = Tool::flat(5.0, 30.0).expect("a tool");
     let up = [0.0, 0.0, 1.0];
-    let poses = [
-        [-40.0, 0.0, 15.0],
-        [-40.0, 0.0, 2.0],
-        [40.0, 0.0, 2.0],
-        [40.0, 0.0, 15.0],
-    ];
-    let path = Path::new(poses.map(|tip| Pose::new(tip, up).expect("a pose")).to_vec()).expect("a path");
+    let path = Path::new(TIPS.map(|tip| Pose::new(tip, up).expect("a pose")).to_vec()).expect("a path");
     (tool, path)
 }
 
