@@ -30,6 +30,8 @@ pub(super) fn describe(
         let known = proof::Known {
             findings: &findings,
             is_left: { regions }.any(|region| region.kind == DeviationKind::Excess),
+            gouge: found.map_or(0.0, |found| found.gouge.max),
+            excess: found.map_or(0.0, |found| found.excess.max),
             distance,
         };
         let new;

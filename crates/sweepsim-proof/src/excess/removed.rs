@@ -202,6 +202,43 @@ impl Removed<'_> {
         known
     }
 
+    /// The same, by what holds the middle deepest of all that comes near it, however far from its axis; `None` if
+    /// nothing is known to hold it. This takes as long as there is much of it.
+    pub fn held_anywhere(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<Known> {
+        let mut deepest: Option<(f64, Holder)> = None;
+        for (course, own) in self.courses.iter().enumerate() {
+            for (solid, CourseSolid { level, boxes, .. }) in own.solids.iter().enumerate() {
+                if !own.solids[solid].convex.is_exact() {
+                    continue;
+                }
+                boxes.around(middle, middle, &mut |stretch| {
+                    let (value, time) = quick(level, &own.stretches[stretch], middle);
+                    let holder = Holder {
+                        course,
+                        solid,
+                        stretch,
+                        time: None,
+                    };
+                    if deepest.is_none_or(|(least, _)| value < least) && self.holds(holder, middle) {
+                        let time = (!own.stretches[stretch].is_straight()).then_some(time as f32);
+                        deepest = Some((value, Holder { time, ..holder }));
+                    }
+                    true
+                });
+            }
+        }
+        let (_, holder) = deepest?;
+        let (level, stretch) = self.of(holder);
+        let (held, time) = self.held_by(points, (level, stretch, holder.time.map_or(0.0, f64::from)));
+        let holder = Some(Holder { time, ..holder });
+        Some(Known {
+            holder: holder.filter(|_| !held.contains(&false)),
+            held,
+            is_removed: true,
+            nearest: holder,
+        })
+    }
+
     /// Whether what held other points holds these.
     fn held_again(&self, points: &[Vector3<f64>], middle: &Vector3<f64>, mut recent: Holder) -> Option<Holder> {
         let (level, stretch) = self.of(recent);

@@ -135,6 +135,7 @@ impl Above<'_> {
     /// Above several planes at once.
     fn lift(&self, planes: &[(Normal, f64)], best: &mut Depth) {
         let mut tops = [f64::NEG_INFINITY; MOST_PLANES];
+        let most = best.value.min(self.cell.lift);
         // Each triangle has to be below one of the planes: the first of those that the solid is about least below, so
         // that rounding does not decide, and a checker chooses the same.
         for piece in self.cell.pieces(self.triangles) {
@@ -143,6 +144,10 @@ impl Above<'_> {
                 let heights = piece.corners.iter().map(|corner| way.vector.dot(corner));
                 *own = heights.fold(f64::NEG_INFINITY, f64::max);
                 least = least.min(*own + below);
+            }
+            // It has to be lifted by as much.
+            if least > most {
+                return;
             }
             let about = least + ABOUT * self.cell.half;
             let first = planes

@@ -113,7 +113,8 @@ impl<'a> Search<'a> {
 
     /// A pair whose bound is no more than this is done.
     fn enough(&self) -> f64 {
-        enough(self.known(), self.wanted.width, self.wanted.limit) - self.wanted.allowance
+        let enough = enough(self.known(), self.wanted.width, self.wanted.limit);
+        enough.max(self.wanted.settled) - self.wanted.allowance
     }
 
     fn visit(&mut self, pair: &Pair<'a>) {
@@ -171,12 +172,25 @@ impl<'a> Search<'a> {
         } else {
             STRAIGHT * cell.lift
         };
-        if few && !cell.has_many() {
-            let above = Above {
-                during,
-                cell,
-                triangles: &self.target.triangles,
-            };
+        let above = Above {
+            during,
+            cell,
+            triangles: &self.target.triangles,
+        };
+        let is_separated = |search: &mut Self| {
+            let normal = above.separating(search.wanted.slack);
+            if let Some(normal) = normal {
+                search
+                    .trace
+                    .bound(node, Reason::Separated, one(normal), f64::NEG_INFINITY);
+            }
+            normal.is_some()
+        };
+        if few && cell.has_many() {
+            if is_separated(self) {
+                return;
+            }
+        } else if few {
             if pieces == 0 {
                 depth.place = Some(cell.centre);
             } else {
@@ -193,9 +207,7 @@ impl<'a> Search<'a> {
                 depth.value = depth.value.min(self.deepest_by_middle(cell, node));
             }
             if depth.value > self.enough() {
-                if let Some(normal) = above.separating(self.wanted.slack) {
-                    self.trace
-                        .bound(node, Reason::Separated, one(normal), f64::NEG_INFINITY);
+                if is_separated(self) {
                     return;
                 }
                 self.sample(when, &during, &depth);

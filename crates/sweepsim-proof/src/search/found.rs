@@ -19,6 +19,8 @@ pub(super) struct Wanted {
     pub pairs: usize,
     /// Some point is known to be so deep.
     pub known: f64,
+    /// What is no deeper than this is done, whatever is known.
+    pub settled: f64,
     /// Whether a tree is left for a checker.
     pub recorded: bool,
 }

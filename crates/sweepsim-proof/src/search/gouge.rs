@@ -35,6 +35,9 @@ pub struct Limits {
     pub pairs: usize,
     /// How far the [pieces](Cutter::pieces) of a path may be from it.
     pub deviation: f64,
+    /// Something is expected to be so deep, as on the lines of dexels: no time is spent on narrower bounds. Nothing is
+    /// taken for proven because of it.
+    pub expected: f64,
 }
 
 impl Limits {
@@ -46,7 +49,13 @@ impl Limits {
             width,
             pairs,
             deviation: DEVIATION * width,
+            expected: 0.0,
         }
+    }
+
+    /// What is expected, unless that is beyond the limit: whether it is kept is to be known.
+    pub(crate) fn expected(&self) -> f64 {
+        if self.expected < self.depth { self.expected } else { 0.0 }
     }
 }
 
@@ -133,6 +142,13 @@ pub fn deepest_from(
                 enough
             }),
             known,
+            settled: match limits.expected() {
+                expected if look > 0 && expected > 0.0 => {
+                    let room = limits.width.max(ROOM * (limits.depth - expected));
+                    limits.depth.min(expected + room)
+                }
+                _ => 0.0,
+            },
             recorded,
         };
         let is_asked = |number: &usize| look > 0 || parts[*number].is_sampled(SAMPLED, parts.len());
@@ -176,6 +192,8 @@ struct Asked {
     width: f64,
     /// Some point is known to be so deep.
     known: f64,
+    /// What is no deeper than this is done, whatever is known.
+    settled: f64,
     recorded: bool,
 }
 
@@ -189,7 +207,7 @@ fn look_at(
 ) -> Option<Vec<Found>> {
     let mut question = Writing::default();
     question.bytes(b"deepest");
-    question.floats(&[limits.depth, asked.width, asked.known]);
+    question.floats(&[limits.depth, asked.width, asked.known, asked.settled]);
     question.number(asked.pairs);
     question.number(usize::from(asked.recorded));
     let asking = Asking {
@@ -249,6 +267,7 @@ fn look(
         slack: limits.deviation + ROUNDING * (size + reach),
         pairs: asked.pairs,
         known: asked.known,
+        settled: asked.settled,
         recorded: asked.recorded,
     };
     let mut all = Found::default();

@@ -3,6 +3,7 @@
 mod apart;
 mod certificates;
 mod clear;
+mod expected;
 mod forged;
 mod jagged;
 mod process;

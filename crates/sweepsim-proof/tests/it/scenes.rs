@@ -15,7 +15,7 @@ use sweepsim_props::test_runner::{Config, TestRunner};
 use sweepsim_props::*;
 
 /// A sphere of triangles.
-fn sphere(centre: [f64; 3], radius: f64, rings: usize) -> TriangleSoup {
+pub(crate) fn sphere(centre: [f64; 3], radius: f64, rings: usize) -> TriangleSoup {
     let sectors = 2 * rings;
     let at = |ring: usize, sector: usize| {
         if ring == 0 || ring == rings {

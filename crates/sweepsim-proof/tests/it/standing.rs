@@ -18,7 +18,7 @@ fn left(target: &TriangleSoup, tool: &Tool, tips: &[[f64; 3]]) -> Left {
 }
 
 /// `x`: from where to where the stock is.
-fn left_of((x, target): ([f64; 2], &TriangleSoup), tool: &Tool, tips: &[[f64; 3]], limits: &Limits) -> Left {
+pub(crate) fn left_of((x, target): ([f64; 2], &TriangleSoup), tool: &Tool, tips: &[[f64; 3]], limits: &Limits) -> Left {
     let up = [0.0, 0.0, 1.0];
     let poses = tips.iter().map(|tip| Pose::new(*tip, up).expect("a pose"));
     let path = Path::new(poses.collect()).expect("a path");

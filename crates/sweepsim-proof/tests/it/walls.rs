@@ -84,8 +84,12 @@ pub(crate) fn cut() -> (Tool, Path) {
 }
 
 fn judged(target: &TriangleSoup) -> Certified {
+    certified_with(target, &LIMITS)
+}
+
+pub(crate) fn certified_with(target: &TriangleSoup, limits: &Limits) -> Certified {
     let (tool, path) = cut();
-    certified(target, &tool, &path, &LIMITS)
+    certified(target, &tool, &path, limits)
 }
 
 fn check(target: &TriangleSoup, truth: f64) {

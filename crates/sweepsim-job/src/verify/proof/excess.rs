@@ -1,6 +1,6 @@
 //! What is proven of what is left standing.
 
-use super::{LISTED, Proof, Proven};
+use super::{Known, LISTED, Proof, Proven};
 use crate::base::JobError;
 use crate::verify::asked::{Asked, limits};
 use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
@@ -9,12 +9,12 @@ use sweepsim_proof::{Convex, Cutter, Target, height_claim, highest_from};
 /// If the lines have seen material that is left, how much is left has so many patches to be known better.
 const PATCHES: usize = 200_000;
 
-/// What is proven of excess. `is_seen`: whether some was seen on the lines.
+/// What is proven of excess.
 pub(super) fn excess(
     proof: &Proof,
     asked: &Asked,
     solid: &Result<Target, String>,
-    is_seen: bool,
+    lines: &Known,
 ) -> Result<Proven, JobError> {
     let (session, job) = (proof.session, proof.session.job);
     let [least, most] = limits(job, |[_, excess]| excess);
@@ -31,7 +31,8 @@ pub(super) fn excess(
     let movers = proof.asked.along(&cutters, None);
     let along: Vec<Cutter> = movers.iter().map(|(_, cutter)| *cutter).collect();
     let mut wanted = proof.asked.limits(asked);
-    if is_seen {
+    wanted.expected = lines.excess;
+    if lines.is_left {
         wanted.pairs = PATCHES;
     }
     let known = proof.known(Some(asked.obstacles[0]));

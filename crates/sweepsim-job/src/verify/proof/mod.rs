@@ -27,7 +27,7 @@ use sweepsim_dexel::DistanceTo;
 use sweepsim_formats::{
     Job, Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness, Verdict,
 };
-use sweepsim_proof::{Cutter, Enclosed, OpenBox, Recall, Target, Witness, deepest_from, depth_claim};
+use sweepsim_proof::{Cutter, Enclosed, Limits, OpenBox, Recall, Target, Witness, deepest_from, depth_claim};
 
 /// As many open places are listed.
 const LISTED: usize = 100;
@@ -69,8 +69,11 @@ struct Proof<'a> {
 pub(super) struct Known<'a> {
     /// What was found on the lines.
     pub findings: &'a [ReportedFinding],
-    /// Whether material was left there.
+    /// Whether material was left there that should not be.
     pub is_left: bool,
+    /// How far the target is missed there at most.
+    pub gouge: f64,
+    pub excess: f64,
     /// The distance to the target, if there is one.
     pub distance: Option<&'a DistanceTo>,
 }
@@ -147,8 +150,8 @@ fn proven(session: Session, texts: &mut ProgramTexts, known: Known, recalls: boo
             .map(|(_, solid, setup)| (solid.as_ref().map_err(String::clone), *setup))
             .collect();
         match (asked.about, asked.measure) {
-            ("gouge", _) => gouges(&proof, texts, asked, &solids[0].1),
-            (_, Measured::Height) => excess::excess(&proof, asked, &solids[0].1, known.is_left),
+            ("gouge", _) => gouges(&proof, texts, asked, (&solids[0].1, known.gouge)),
+            (_, Measured::Height) => excess::excess(&proof, asked, &solids[0].1, &known),
             _ => bodies::beside(&proof, texts, asked, &own),
         }
     };
@@ -189,12 +192,12 @@ fn proven(session: Session, texts: &mut ProgramTexts, known: Known, recalls: boo
     Ok(((statements, findings, certified), solids.iter().any(is_crowded)))
 }
 
-/// What is proven of gouges.
+/// What is proven of gouges. `expected`: how deep they are on the lines.
 fn gouges(
     proof: &Proof,
     texts: &mut ProgramTexts,
     asked: &Asked,
-    solid: &Result<Target, String>,
+    (solid, expected): (&Result<Target, String>, f64),
 ) -> Result<Proven, JobError> {
     let job = proof.session.job;
     let [least, most] = limits(job, |[gouge, _]| gouge);
@@ -213,7 +216,10 @@ fn gouges(
         &proof.known(Some(asked.obstacles[0])),
         solid,
         &own,
-        &proof.asked.limits(asked),
+        &Limits {
+            expected,
+            ..proof.asked.limits(asked)
+        },
         proof.scene.is_some(),
         proof.session.monitor,
     );

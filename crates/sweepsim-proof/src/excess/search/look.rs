@@ -50,15 +50,8 @@ impl Search<'_> {
                 continue;
             }
             self.asks(&points);
-            let Known {
-                holder,
-                nearest,
-                is_removed,
-                ..
-            } = scene.removed.held(&points, &middle, self.recent);
-            if let Some(holder) = holder {
-                self.recent = Some(holder);
-                self.record(|record| record.removed(holder));
+            let mut known = scene.removed.held(&points, &middle, self.recent);
+            if self.is_removed(&known) {
                 continue;
             }
             match self.by_the_target(&whole, &middle) {
@@ -72,7 +65,7 @@ impl Search<'_> {
                 }
                 None => {}
             }
-            if !is_removed && self.is_left(&middle) {
+            if !known.is_removed && self.is_left(&middle) {
                 let height = scene.height(&middle) - scene.removed.margin;
                 self.found.take(middle, height);
                 // Else the middle is not of the surface.
@@ -81,7 +74,15 @@ impl Search<'_> {
                     self.rise(&patch);
                     continue;
                 }
+            } else if !known.is_removed
+                && let Some(other) = scene.removed.held_anywhere(&points, &middle)
+            {
+                if self.is_removed(&other) {
+                    continue;
+                }
+                known = other;
             }
+            let nearest = known.nearest;
             let is_free = |point: &Vector3<f64>| {
                 let is_held = nearest.is_some_and(|nearest| scene.removed.holds(nearest, point));
                 is_held || !scene.before.holds_around(point, 2.0 * scene.removed.margin)
@@ -96,6 +97,15 @@ impl Search<'_> {
                 _ => self.leave(&points),
             }
         }
+    }
+
+    /// Whether one solid is known to have removed a whole patch: noted.
+    fn is_removed(&mut self, known: &Known) -> bool {
+        if let Some(holder) = known.holder {
+            self.recent = Some(holder);
+            self.record(|record| record.removed(holder));
+        }
+        known.holder.is_some()
     }
 
     fn halve(&mut self, (halved, [first, second]): (Halved, [Patch; 2]), open: &mut Vec<Patch>) {
