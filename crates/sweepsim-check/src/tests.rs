@@ -55,32 +55,47 @@ fn depths_end_in_notches_that_lean() {
     assert!(depth <= bound && bound < depth + 1e-6, "{bound}");
 }
 
-/// Two opposite normals are divided on the side of the third; without one, nobody knows where. Those of a thin wedge
-/// are divided beyond its edge, wherever the third one is.
+/// Between two opposite normals, nobody knows where the middle is. Those of a thin wedge are divided beyond its edge.
 #[test]
-fn opposite_normals_are_divided_by_the_third() {
+fn opposite_normals_are_not_divided() {
     let normal = unit(&[0.6, 0.64, 0.48]).expect("a direction");
     let third = unit(&[0.3, -0.5, 0.2]).expect("a direction");
     for off in [0.0, 1e-14, 1e-9, 1e-7] {
         let opposite = unit(&[-normal[0] + off, -normal[1], -normal[2] - off]).expect("a direction");
-        let patch = |normals: &[[f64; 3]]| Patch {
-            corners: vec![[1.0, 2.0, 3.0]],
-            normals: normals.to_vec(),
-            is_flat: false,
-        };
-        let sum = [0, 1, 2].map(|k| normal[k] + opposite[k]);
-        let beyond = unit(&sum).filter(|_| off > 1e-12);
-        let alone = patch(&[normal, opposite]).halves(None, [0, 1]);
-        assert_eq!(alone.map(|halves| halves[0].normals[0]), beyond);
-        let halves = patch(&[normal, opposite, third]).halves(None, [0, 1]).expect("a side");
-        let [first, second] = halves.map(|half| half.normals);
-        let middle = first[0];
-        assert!(second == [normal, middle, third] && first == [middle, opposite, third]);
-        match beyond {
-            Some(beyond) => assert_eq!(middle, beyond),
-            // Across both, and on the side of the third.
-            None => assert!(dot(&middle, &normal).abs() < 1e-12 && dot(&middle, &third) > 0.1),
+        let beyond = unit(&[0, 1, 2].map(|k| normal[k] + opposite[k])).filter(|_| off > 1e-12);
+        for normals in [vec![normal, opposite], vec![normal, opposite, third]] {
+            let patch = Patch {
+                corners: vec![[1.0, 2.0, 3.0]],
+                normals: normals.clone(),
+                is_flat: false,
+            };
+            let halves = patch.halves(None, [0, 1]).map(|halves| halves.map(|half| half.normals));
+            let parted = beyond.map(|middle| {
+                [0, 1].map(|end| {
+                    let mut own = normals.clone();
+                    own[end] = middle;
+                    own
+                })
+            });
+            assert_eq!(halves, parted);
         }
+    }
+}
+
+/// Every direction is between three of the axes.
+#[test]
+fn patches_all_around_leave_nothing_out() {
+    let patch = Patch {
+        corners: vec![[1.0, 2.0, 3.0]],
+        normals: Vec::new(),
+        is_flat: false,
+    };
+    let all = patch.all_around();
+    assert_eq!(all.len(), 8);
+    for signs in 0..8 {
+        let direction = [0, 1, 2].map(|k| if signs >> k & 1 == 0 { 0.3 } else { -0.4 });
+        let is_between = |part: &&Patch| part.normals.iter().all(|n| dot(n, &direction) > 0.0);
+        assert_eq!(all.iter().filter(is_between).count(), 1);
     }
 }
 

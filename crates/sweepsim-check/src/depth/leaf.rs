@@ -31,9 +31,14 @@ use crate::surface::Surface;
 use crate::vector::{EPS, MORE, V3, add, cross, dot, dot_down, dot_up, norm_up, scaled, size};
 
 /// Each piece of the surface is below one of the planes: of those that have to be raised least for it, or by this part
-/// of half a cell more, the first or the last. The prover takes the first choice, but cuts other pieces: where it takes
-/// one plane for them, another may be as good here.
-const CHOICES: [(f64, bool); 3] = [(1e-6, false), (1e-3, false), (1e-3, true)];
+/// of half a cell more, the first or the last; or any that is raised for others, too. The prover takes the first
+/// choice, but cuts other pieces: where it takes one plane for them, another may be as good here.
+const CHOICES: [(f64, bool, bool); 4] = [
+    (1e-6, false, false),
+    (1e-3, false, false),
+    (1e-3, true, false),
+    (1e-6, false, true),
+];
 
 /// When.
 pub(crate) enum During<'a> {
@@ -162,14 +167,15 @@ impl Near<'_> {
         best
     }
 
-    fn lifted_by_choice(&self, normals: &[V3], (about, last): (f64, bool)) -> Option<f64> {
+    fn lifted_by_choice(&self, normals: &[V3], (about, last, any): (f64, bool, bool)) -> Option<f64> {
         let reach: Vec<f64> = normals
             .iter()
             .map(|n| self.reach_in_cell_up(&scaled(n, -1.0)))
             .collect();
         // Any choice is right.
         let mut tops = vec![f64::NEG_INFINITY; normals.len()];
-        for own in self.cell.tops_up(normals)? {
+        let pieces: Vec<_> = self.cell.tops_up(normals)?.collect();
+        for own in &pieces {
             let depths = own.iter().zip(&reach).map(|(top, reach)| top + reach);
             let most = depths.clone().fold(f64::INFINITY, f64::min) + about * self.cell.half;
             let (mut depths, is_least) = (depths, |depth| depth <= most);
@@ -178,6 +184,15 @@ impl Near<'_> {
                 false => depths.position(is_least),
             }?;
             tops[chosen] = tops[chosen].max(own[chosen]);
+        }
+        // What is below another plane, as it turned out, does not need this one.
+        for i in (0..normals.len()).filter(|_| any) {
+            let needs_it = |own: &&[f64; MOST_PLANES]| (0..normals.len()).all(|j| j == i || own[j] > tops[j]);
+            tops[i] = pieces
+                .iter()
+                .filter(needs_it)
+                .map(|own| own[i])
+                .fold(f64::NEG_INFINITY, f64::max);
         }
         let half = self.cell.half;
         let used: Vec<usize> = (0..normals.len()).filter(|i| tops[*i] > f64::NEG_INFINITY).collect();

@@ -54,7 +54,7 @@ impl Proof for &Left<'_> {
                 let part = reader.float_if(kind < 13)?;
                 Ok(patch.halves(part, pair)?.to_vec())
             }
-            16 => Ok(patch.threes()),
+            16 => Ok(patch.all_around()),
             17 => Ok(patch.threes_with_first()?),
             _ if self.holds(patch, kind, reader)? => Ok(Vec::new()),
             _ => Err("something may be left there"),

@@ -147,11 +147,7 @@ impl Patch {
         let middle = match part {
             Some(part) => add(&p, &scaled(&sub(&q, &p), part)),
             None if norm(&add(&p, &q)) > OPPOSITE => unit(&add(&p, &q))?,
-            // What is between all of them is on the side of the one that is across.
-            None => {
-                let across = |n: &V3| Some(sub(n, &scaled(&p, dot(n, &p)))).filter(|across| norm(across) > 1e-3);
-                unit(&self.normals.iter().find_map(across)?)?
-            }
+            None => return None,
         };
         let half = |end: usize| {
             let mut half = self.clone();
@@ -167,12 +163,15 @@ impl Patch {
         (is_between && i != j && all.len() <= 3).then(|| [half(i), half(j)])
     }
 
-    /// The patches of any three normals.
-    pub fn threes(&self) -> Vec<Self> {
-        let pairs = |i: usize| (0..i).flat_map(move |j| (0..j).map(move |k| [i, j, k]));
-        (0..self.normals.len())
-            .flat_map(pairs)
-            .map(|three| self.between(three))
+    /// Patches of all directions, whatever its normals: between the axes.
+    pub fn all_around(&self) -> Vec<Self> {
+        let axis = |octant: usize, k: usize| {
+            let mut axis = [0.0; 3];
+            axis[k] = if octant >> k & 1 == 0 { 1.0 } else { -1.0 };
+            axis
+        };
+        (0..8)
+            .map(|octant| self.between([0, 1, 2].map(|k| axis(octant, k))))
             .collect()
     }
 
@@ -185,16 +184,16 @@ impl Patch {
         Some(
             (1..self.normals.len())
                 .flat_map(pairs)
-                .map(|three| self.between(three))
+                .map(|three| self.between(three.map(|n| self.normals[n])))
                 .collect(),
         )
     }
 
-    /// The patch between three of its normals.
-    fn between(&self, normals: [usize; 3]) -> Self {
+    /// The patch between three directions.
+    fn between(&self, normals: [V3; 3]) -> Self {
         Self {
             corners: self.corners.clone(),
-            normals: normals.map(|n| self.normals[n]).to_vec(),
+            normals: normals.to_vec(),
             is_flat: false,
         }
     }

@@ -44,6 +44,8 @@ const APART: f64 = 0.02;
 const PARTINGS: usize = 16;
 /// Normals whose sum is shorter are opposite but for their rounding: for a checker, too.
 const OPPOSITE: f64 = 1e-11;
+/// Three normals in one plane, or nearly so, have a smaller determinant.
+const SOLID: f64 = 1e-2;
 /// Normals that differ less are the same, for what a patch is: every test of it has a larger margin. A checker takes
 /// twice as much.
 pub(super) const SAME: f64 = 5e-10;
@@ -61,27 +63,25 @@ impl Patch {
             corners: [*place].into_iter().collect(),
             normals,
         };
-        match own.len() {
+        if own.len() < 3 {
             // Of the edges.
-            0..=2 => SmallVec::new(),
-            3 => SmallVec::from([patch(own)]),
-            _ => {
-                let whole = patch(own);
-                if whole.spread() <= WIDE {
-                    return SmallVec::from([whole]);
-                }
-                let (own, count) = (&whole.normals, whole.normals.len());
-                let three = |own: [Vector3<f64>; 3]| patch(own.into_iter().collect());
-                let pairs = |first: usize| (first..count).flat_map(move |i| (first..i).map(move |j| (i, j)));
-                if whole.points(0.0).is_some() {
-                    // A vector in their cone, less enough of the first of them, is between two others (Carathéodory).
-                    return pairs(1).map(|(i, j)| three([own[0], own[i], own[j]])).collect();
-                }
-                // Any three of them: of a polygon on the sphere, convex or not, every point of its hull is in such.
-                let threes = pairs(0).flat_map(|(i, j)| (0..j).map(move |k| [i, j, k]));
-                threes.map(|numbers| three(numbers.map(|n| own[n]))).collect()
-            }
+            return SmallVec::new();
         }
+        let whole = patch(own);
+        let three = |own: [Vector3<f64>; 3]| patch(own.into_iter().collect());
+        let is_solid = |own: &Vectors| own.len() == 3 && own[0].dot(&own[1].cross(&own[2])).abs() > SOLID;
+        if whole.points(0.0).is_none() && !is_solid(&whole.normals) {
+            // They look all around: between the axes is every direction.
+            let axis = |octant: usize, k: usize| Vector3::ith(k, if octant >> k & 1 == 0 { 1.0 } else { -1.0 });
+            return (0..8).map(|octant| three([0, 1, 2].map(|k| axis(octant, k)))).collect();
+        }
+        if whole.normals.len() == 3 || whole.spread() <= WIDE {
+            return SmallVec::from([whole]);
+        }
+        // A vector in their cone, less enough of the first of them, is between two others (Carathéodory).
+        let own = &whole.normals;
+        let pairs = (1..own.len()).flat_map(|i| (1..i).map(move |j| (i, j)));
+        pairs.map(|(i, j)| three([own[0], own[i], own[j]])).collect()
     }
 
     /// The largest sine of half the angle between two normals, twice.
@@ -207,15 +207,10 @@ impl Patch {
             });
         }
         let middle = (self.normals[k] + self.normals[l]).try_normalize(OPPOSITE);
-        // Opposite normals: by way of the third, or of any direction across, which no checker believes.
+        // Those of an edge may be opposite: by way of any direction across, which no checker believes.
         let middle = middle.unwrap_or_else(|| {
             let own = self.normals[k];
-            let across = |other: &Vector3<f64>| (other - own * own.dot(other)).try_normalize(1e-3);
-            let axis = Vector3::ith(own.iamin(), 1.0);
-            self.normals
-                .iter()
-                .find_map(across)
-                .unwrap_or_else(|| own.cross(&axis).normalize())
+            own.cross(&Vector3::ith(own.iamin(), 1.0)).normalize()
         });
         let ends = [k.min(l), k.max(l)];
         let half = |end| Self {
@@ -247,25 +242,67 @@ fn parted(is_free: impl Fn(f64) -> bool, from_first: bool) -> f32 {
 mod tests {
     use super::*;
 
-    /// Any middle of two opposite normals would cover what it should, but with some of them this never came to an end.
+    /// Whether a direction is in the cone of three normals, but for rounding.
+    fn is_between(u: &Vector3<f64>, normals: &[Vector3<f64>]) -> bool {
+        let all = nalgebra::Matrix3::from_columns(normals);
+        all.lu().solve(u).is_some_and(|parts| parts.min() > -1e-9)
+    }
+
+    /// Normals may lie in one plane, all around, or be opposite: with these, halving some three of them never came to
+    /// an end.
     #[test]
-    fn opposite_normals_come_to_an_end() {
-        let axes = [0, 1, 2].map(|k| Vector3::ith(k, 1.0));
-        let axis = |k: usize| axes[k % 3] * if k < 3 { 1.0 } else { -1.0 };
-        for number in 0..216 {
-            let normals = [number / 36, number / 6 % 6, number % 6].map(axis);
-            let mut open = vec![Patch {
-                corners: [Vector3::zeros()].into_iter().collect(),
-                normals: normals.into_iter().collect(),
-            }];
-            let mut parts = 0;
+    fn patches_of_a_corner_cover_all_between_its_normals() {
+        let mut seed = 1_u64;
+        let mut random = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut counts, mut around) = ([0; 3], 0);
+        for case in 0..3000 {
+            let count = 3 + case % 4;
+            let kind = case / 4 % 3;
+            let normals: Vec<Vector3<f64>> = (0..count)
+                .map(|_| match kind {
+                    0 => Vector3::from_fn(|_, _| random() - 0.5).normalize(),
+                    // All in one plane.
+                    1 => {
+                        let (sine, cosine) = (std::f64::consts::TAU * random()).sin_cos();
+                        Vector3::new(sine, 0.0, cosine)
+                    }
+                    _ => Vector3::ith((3.0 * random()) as usize, if random() < 0.5 { 1.0 } else { -1.0 }),
+                })
+                .collect();
+            let patches = Patch::at_corner(&Vector3::zeros(), normals.iter().copied());
+            around += usize::from(patches.len() == 8);
+            let mut open: Vec<Patch> = patches.to_vec();
+            let (mut parts, mut done) = (0, Vec::new());
             while let Some(patch) = open.pop() {
                 parts += 1;
-                assert!(parts < 64, "{normals:?}");
-                if patch.points(0.1).is_none() {
-                    open.extend(patch.halves(0.1, 0.0, None).expect("halves").1);
+                assert!(parts < 200, "{normals:?}");
+                match patch.points(0.1) {
+                    None => open.extend(patch.halves(0.1, 0.0, None).expect("halves").1),
+                    Some(_) => done.push(patch),
                 }
             }
+            for _ in 0..20 {
+                let sum: Vector3<f64> = normals.iter().map(|normal| normal * random()).sum();
+                // Between normals in one plane on one side, there is no room.
+                let is_flat = kind == 1 && patches.len() != 8;
+                let Some(u) = sum.try_normalize(1e-2).filter(|_| !done.is_empty() && !is_flat) else {
+                    continue;
+                };
+                counts[kind] += 1;
+                let covers = |patch: &Patch| match &patch.normals[..] {
+                    all @ [_, _, _] => is_between(&u, all),
+                    // As narrow as it is, any three of its first with others.
+                    all => (1..all.len()).any(|i| (1..i).any(|j| is_between(&u, &[all[0], all[i], all[j]]))),
+                };
+                assert!(done.iter().any(covers), "{u:?} {normals:?}");
+            }
         }
+        assert!(
+            counts.iter().all(|count| *count > 5000) && around > 1000,
+            "{counts:?} {around}"
+        );
     }
 }

@@ -10,8 +10,8 @@
 //! | 3 | Removed: the numbers of what moves, of its solid, and of the stretch; the time, an `f32`, if that is not straight. |
 //! | 4 | Inside of the solid, all of a ball around its middle. |
 //! | 10, 11, 12 | Parted between the corners 0 and 1, 0 and 2, or 1 and 2: at which part of the way, an `f32`. |
-//! | 13, 14, 15 | Halved between two normals; of opposite ones, by way of the third. |
-//! | 16 | For any three of its normals. |
+//! | 13, 14, 15 | Halved between two normals. |
+//! | 16 | In all directions, between the axes. |
 //! | 17 | For any two of its normals and the first. |
 
 use super::patch::{Halved, Patch, Patches};
