@@ -7,7 +7,7 @@ use crate::height::{Left, off, patches};
 use crate::motion::{Run, Stretch};
 use crate::scene::{Course, Measure, Motion, Question, Scene};
 use crate::surface::Surface;
-use crate::tool::{Body, Cutting, bodies};
+use crate::tool::{Body, Cutting, bodies, bridged};
 use crate::tree::{Checked, walked};
 use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
 use crate::zone::Ring;
@@ -58,7 +58,7 @@ fn found(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> R
         movers.push(bodies(outline, cover)?);
         scene.paths.get(*path).ok_or("something that moves has no path")?;
     }
-    let cutters = movers.split_off(question.movers.len());
+    let cutters: Vec<_> = movers.drain(question.movers.len()..).map(|own| bridged(&own)).collect();
     let asked = Asked {
         scene,
         question,
@@ -266,10 +266,11 @@ impl Asked<'_> {
         if end != patches.len() {
             return Err("not all patches have a tree".into());
         }
+        let cutters: Vec<_> = self.movers.iter().map(|own| bridged(own)).collect();
         let left = Left {
             scene,
             surface,
-            movers: self.cutting(&self.question.movers, self.movers, |motion| !motion.possible),
+            movers: self.cutting(&self.question.movers, &cutters, |motion| !motion.possible),
             distance: claim.bound,
         };
         self.all(|tree, bytes| walked(&left, &patches[tree.first..tree.first + tree.count], bytes))

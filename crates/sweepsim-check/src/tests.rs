@@ -4,7 +4,7 @@ use crate::depth::Cell;
 use crate::height::Patch;
 use crate::scene::Curve;
 use crate::surface::Surface;
-use crate::tool::{Body, bodies};
+use crate::tool::{Body, bodies, bridged};
 use crate::vector::{dot, unit};
 use std::f64::consts::FRAC_PI_2;
 
@@ -158,4 +158,51 @@ fn a_hull_is_not_cut_and_removes_nothing() {
     ];
     let all = bodies(&hollow, &[[3, 1]]).expect("a tool");
     assert!(all[0].level([0.0, 1.0]).is_none());
+}
+
+/// What leads from one solid of a tool into the next is a part of the tool, and as wide as it is between them.
+#[test]
+fn cylinders_between_solids_are_parts_of_the_tool() {
+    // A cone on a neck, whose lower end is wider than it (where the cut is) or not; and a disc below it.
+    for (neck, wide) in [(3.0, 4.0), (3.0, 3.0), (2.0, 6.0)] {
+        let outline = vec![
+            line([0.0, 0.0], [6.0, 0.0]),
+            line([6.0, 0.0], [wide, 4.0]),
+            line([wide, 4.0], [neck, 4.0]),
+            line([neck, 4.0], [neck, 9.0]),
+            line([neck, 9.0], [5.0, 14.0]),
+            line([5.0, 14.0], [0.0, 14.0]),
+        ];
+        let outline: Vec<Curve> = if wide == neck {
+            [&outline[..2], &outline[3..]].concat()
+        } else {
+            outline
+        };
+        let below = outline.len() - 3;
+        let all = bridged(&bodies(&outline, &[[below, 1], [1, 1], [2, 1]]).expect("a tool"));
+        assert_eq!(all.len(), 5);
+        let radius = |z: f64| match z {
+            ..0.0 | 14.0.. => f64::NEG_INFINITY,
+            ..4.0 => 6.0 + (wide - 6.0) * z / 4.0,
+            ..9.0 => neck,
+            _ => neck + (5.0 - neck) * (z - 9.0) / 5.0,
+        };
+        let mut across = [0; 2];
+        for i in 0..70 {
+            for j in -10..160 {
+                let (rho, z) = (0.1003 * f64::from(i), 0.1007 * f64::from(j));
+                let held: Vec<bool> = all
+                    .iter()
+                    .map(|body| body.level([rho, z]).expect("a part") <= 0.0)
+                    .collect();
+                assert!(!held.contains(&true) || rho <= radius(z), "{rho} {z} {held:?}");
+                for (k, seam) in [4.0, 9.0].into_iter().enumerate() {
+                    let is_near = rho < neck - 1e-6 && (z - seam).abs() < 2.0;
+                    assert!(!is_near || held[3 + k], "{rho} {z}");
+                    across[k] += usize::from(is_near);
+                }
+            }
+        }
+        assert!(across.iter().all(|count| *count > 500), "{across:?}");
+    }
 }

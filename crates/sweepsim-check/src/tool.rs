@@ -87,6 +87,40 @@ pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body
         .ok_or("a cover does not cover its tool".into())
 }
 
+/// A cylinder between two solids is narrower than the tool by this part.
+const NARROWER: f64 = 1e-9;
+
+/// The solids of a tool, and cylinders that lead from one of them into the next: below where the outline was cut, both
+/// ends of it are in the one, above in the other.
+pub(crate) fn bridged(bodies: &[Body]) -> Vec<Body> {
+    let bridges = bodies.windows(2).filter_map(|pair| bridge(&pair[0], &pair[1]));
+    bodies.iter().cloned().chain(bridges).collect()
+}
+
+fn bridge(below: &Body, above: &Body) -> Option<Body> {
+    let [rho, seam] = match above.pieces.first()? {
+        Piece::Points(points) => *points.first()?,
+        Piece::Arc(centre, radius, [angle, _]) => [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()],
+    };
+    let radius = rho * (1.0 - NARROWER);
+    let end = |body: &Body, far: f64| {
+        let holds = |z: &f64| body.level([radius, *z]).is_some_and(|level| level <= 0.0);
+        let mut ends = (0..16).map(|k| seam + (far - seam) * 0.5_f64.powi(k));
+        holds(&seam).then(|| ends.find(holds)).flatten()
+    };
+    let (low, high) = (end(below, below.heights[0])?, end(above, above.heights[1])?);
+    let lines = vec![
+        ([radius, seam], [1.0, 0.0]),
+        ([0.0, low], [0.0, -1.0]),
+        ([0.0, high], [0.0, 1.0]),
+    ];
+    Some(Body {
+        reach: below.reach.max(above.reach),
+        sides: Some((Vec::new(), lines)),
+        ..Body::default()
+    })
+}
+
 /// Angles that differ by less are the same: what this is off by is within any [margin](crate::Scene::margin).
 const STRAIGHT: f64 = 1e-9;
 

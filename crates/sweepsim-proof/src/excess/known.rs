@@ -33,7 +33,7 @@ impl<'a> Blocks<'a> {
     pub fn new(recall: &'a dyn Recall, removed: &Removed, mut question: Writing, recorded: bool) -> Self {
         let mut all = Vec::new();
         for (number, course) in removed.courses.iter().enumerate() {
-            let solids: Vec<_> = course.solids.iter().map(|own| own.convex).collect();
+            let solids: Vec<_> = course.solids.iter().map(|own| &*own.convex).collect();
             question.bytes(format!("{solids:?}").as_bytes());
             let stretches = course.stretches;
             let place = |number: usize| digest(&stretches[number].ends[0].tip);

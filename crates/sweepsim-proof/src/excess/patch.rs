@@ -54,9 +54,15 @@ impl Patch {
     /// Those of a corner, with the normals around it.
     pub fn at_corner(place: &Vector3<f64>, normals: impl Iterator<Item = Vector3<f64>>) -> Patches {
         let mut own = Vectors::new();
+        // Whether some are nearly the same, which a checker may see otherwise.
+        let mut is_close = false;
         for normal in normals {
-            if !own.iter().any(|other| (other - normal).norm() <= 2.0 * SAME) {
+            let apart = |other: &Vector3<f64>| (other - normal).norm();
+            let nearest = own.iter().map(apart).fold(f64::INFINITY, f64::min);
+            if nearest > 2.0 * SAME {
                 own.push(normal);
+            } else {
+                is_close |= nearest > SAME;
             }
         }
         let patch = |normals: Vectors| Self {
@@ -65,7 +71,7 @@ impl Patch {
         };
         if own.len() < 3 {
             // Of the edges.
-            return SmallVec::new();
+            return is_close.then(|| patch(own)).into_iter().collect();
         }
         let whole = patch(own);
         let three = |own: [Vector3<f64>; 3]| patch(own.into_iter().collect());

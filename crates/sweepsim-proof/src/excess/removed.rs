@@ -2,20 +2,21 @@
 
 use super::times::{best_time, is_inside, least_order, level_at, order_at, quick, stays_away};
 use crate::motion::{Boxes, Stretch};
-use crate::tool::{Convex, Level};
+use crate::tool::{Convex, Level, bridges};
 use nalgebra::Vector3;
 use smallvec::SmallVec;
+use std::borrow::Cow;
 
 /// A cutter all along its path.
 pub(crate) struct Course<'a> {
     pub stretches: &'a [Stretch],
-    /// Each solid that covers the cutter; a part of it only if it is exact.
+    /// Each solid that covers the cutter; a part of it only if it is exact. Then those that lead from one into another.
     pub solids: Vec<CourseSolid<'a>>,
 }
 
 /// One of the solids that cover a cutter.
 pub(crate) struct CourseSolid<'a> {
-    pub convex: &'a Convex,
+    pub convex: Cow<'a, Convex>,
     pub level: Level,
     pub boxes: Boxes,
 }
@@ -100,12 +101,13 @@ fn first<'a>(mut all: Vec<Candidate<'a>>, point: &Vector3<f64>) -> SmallVec<[Tri
 
 impl<'a> Course<'a> {
     pub fn new(solids: &'a [Convex], stretches: &'a [Stretch], rounding: f64) -> Self {
-        let of = |convex: &'a Convex| CourseSolid {
+        let of = |convex: Cow<'a, Convex>| CourseSolid {
+            level: Level::new(&convex),
+            boxes: Boxes::new(&convex, stretches, rounding),
             convex,
-            level: Level::new(convex),
-            boxes: Boxes::new(convex, stretches, rounding),
         };
-        let solids = solids.iter().map(of).collect();
+        let own = solids.iter().map(Cow::Borrowed);
+        let solids = own.chain(bridges(solids).into_iter().map(Cow::Owned)).map(of).collect();
         Self { stretches, solids }
     }
 

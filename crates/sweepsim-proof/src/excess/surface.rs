@@ -28,6 +28,8 @@ pub(super) struct Surface<'a> {
     around: Vec<u32>,
     /// The places from which an edge turns outwards.
     outwards: Vec<AtomicBool>,
+    /// The largest coordinate.
+    size: f64,
     /// The squares of the lengths of all patches, summed.
     pub squares: f64,
 }
@@ -61,6 +63,7 @@ impl<'a> Surface<'a> {
         let mut all = Self {
             triangles,
             outwards: places.iter().map(|_| AtomicBool::new(false)).collect(),
+            size: places.iter().map(Vector3::amax).fold(0.0, f64::max),
             places,
             faces,
             begins,
@@ -149,8 +152,10 @@ impl<'a> Surface<'a> {
             }
             for (other, off) in others.into_iter().filter(|(other, _)| *other > number) {
                 let (way, off) = (to - from, self.places[off as usize] - from);
-                // The sine of the angle by which it turns inwards.
-                let turn = triangle.normal.dot(&off) * way.norm() / way.cross(&off).norm();
+                // The sine of the angle by which it turns inwards, less what rounding may make of it beside a narrow
+                // triangle: a checker takes half as much.
+                let rounding = 16.0 * f64::EPSILON * (self.size + off.norm());
+                let turn = (triangle.normal.dot(&off) - rounding) * way.norm() / way.cross(&off).norm();
                 each(if turn < -SAME {
                     turns_out();
                     edge(self.triangles[other].normal)

@@ -3,7 +3,7 @@
 use crate::scenes::sphere;
 use crate::standing::left_of;
 use crate::walls::{LIFT, LIMITS, TIPS, certified_with, extruded, slot};
-use sweepsim_motion::{Path, Pose, Tool};
+use sweepsim_motion::{Dovetail, Path, Pose, Tool};
 use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
 
 /// Whatever is expected, what is found is true, and the limit is kept or not. Enclosures need not be narrow where
@@ -71,4 +71,65 @@ fn a_cutter_beside_many_triangles_is_soon_apart_from_them() {
     let found = deepest(&target, &[Cutter::new(&solids, &path, None)], &LIMITS, false, &()).expect("not cancelled");
     assert!(found.open.is_empty() && found.bound < LIMITS.depth, "{}", found.bound);
     assert!(found.pairs < 1000, "{}", found.pairs);
+}
+
+/// The dovetail ends where its neck begins: at that height, walls are half beside the one and half beside the other.
+#[test]
+fn what_a_dovetail_leaves_is_known_across_its_neck() {
+    let half = 6.0 - 4.0 / 3_f64.sqrt();
+    let tool = Dovetail {
+        radius: 6.0,
+        angle: 60.0,
+        height: 4.0,
+        neck: 3.0,
+        length: 30.0,
+    };
+    let tool = Tool::dovetail(tool).expect("a tool");
+    for wide in [3.0, 3.05] {
+        // The groove of the neck is so wide on the right.
+        let profile = [
+            [-20.0, -10.0],
+            [20.0, -10.0],
+            [20.0, 10.0],
+            [wide, 10.0],
+            [wide, 6.0],
+            [half.max(wide), 6.0],
+            [6.0, 2.0],
+            [-6.0, 2.0],
+            [-half, 6.0],
+            [-3.0, 6.0],
+            [-3.0, 10.0],
+            [-20.0, 10.0],
+        ];
+        let x = [-1.0, 1.0];
+        let limits = Limits::new(0.2, 0.02, 500_000);
+        let left = left_of((x, &extruded(&profile, x)), &tool, &TIPS, &limits);
+        let truth = wide - 3.0;
+        let known = left.highest.map_or(0.0, |(_, height)| height);
+        assert!(
+            left.open.is_empty() && known <= truth + 1e-9,
+            "{wide}: {} open, {known}",
+            left.open_count
+        );
+        assert!(
+            truth <= left.bound && left.bound - known <= limits.width + 1e-6,
+            "{wide}: {known} {}",
+            left.bound
+        );
+    }
+}
+
+/// Whether a face is flat beside a very narrow triangle of it, rounding decides: its edges are looked at.
+#[test]
+fn narrow_triangles_of_a_face_are_certified() {
+    let tool = Tool::flat(5.0, 30.0).expect("a tool");
+    let mut soup = slot(-5.0, 5.0, 2.0);
+    let is_floor = |corners: &[[f64; 3]; 3]| corners.iter().all(|corner| corner[2] == 2.0);
+    let number = soup.triangles.iter().position(is_floor).expect("a floor");
+    let [a, b, c] = soup.triangles.swap_remove(number);
+    let near = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]) + 1e-7 * (c[k] - 0.5 * (a[k] + b[k])));
+    soup.triangles.extend([[b, c, near], [c, a, near], [a, b, near]]);
+    let limits = Limits::new(0.2, 0.02, 50_000);
+    let left = left_of(([-30.0, 30.0], &soup), &tool, &TIPS, &limits);
+    assert!(left.bound <= limits.width, "{}: {} open", left.bound, left.open_count);
 }
