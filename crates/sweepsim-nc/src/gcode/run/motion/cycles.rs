@@ -4,7 +4,7 @@
 
 use crate::drive::{HoleCycle, HolePlace, HoleWork, Pecks, WayOut};
 use crate::gcode::codes::{MotionMode, SpindleTurning};
-use crate::gcode::modes::CycleWords;
+use crate::gcode::modes::{CycleWords, Level};
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
@@ -67,9 +67,14 @@ impl Reader {
         let unit = self.unit();
         let length = |letter| block.get(letter).map(|value| value * unit);
         let letter = ['X', 'Y', 'Z'][w];
+        let absolute = self.modes.absolute;
+        let level = |value| Level {
+            value,
+            incremental: !absolute,
+        };
         let sticky = &mut self.modes.cycle;
-        sticky.plane = length('R').or(sticky.plane);
-        sticky.bottom = words[w].or(sticky.bottom);
+        sticky.plane = length('R').map(level).or(sticky.plane);
+        sticky.bottom = words[w].map(level).or(sticky.bottom);
         sticky.peck = length('Q').or(sticky.peck);
         sticky.dwell = block.get('P').or(sticky.dwell);
         if block.has('I') || block.has('J') {
@@ -84,9 +89,10 @@ impl Reader {
             self.track
                 .assume(Assumption::new(what, taken, format!("R with {name}")));
         }
-        let plane = sticky
-            .plane
-            .or(height.map(|at| if self.modes.absolute { at } else { 0.0 }));
+        let plane = sticky.plane.or(height.map(|value| Level {
+            value,
+            incremental: false,
+        }));
         let (Some(plane), Some(bottom)) = (plane, sticky.bottom) else {
             let missing = if plane.is_none() { 'R' } else { letter };
             return Err(NcProblem::syntax(format!(
@@ -107,17 +113,16 @@ impl Reader {
         let Some(mut at) = self.cycle_start(words, plane)? else {
             return Ok(());
         };
-        let absolute = self.modes.absolute;
         let initial = *self.modes.cycle.initial.get_or_insert(at[w]);
-        let plane = if absolute { plane } else { at[w] + plane };
-        let bottom = if absolute { bottom } else { plane + bottom };
+        let [plane, bottom] = self.cycle_levels(&name, [plane, bottom], [initial, at[w]]);
         let back = cycle == 87;
         let hole = if back {
             self.back_boring([at[w], plane, bottom], &sticky)?
         } else if bottom <= plane {
-            let clear = match self.modes.retract_to_plane {
-                true => plane,
-                false => self.modes.return_level.unwrap_or(initial).max(plane),
+            let clear = match (self.modes.retract_to_plane, self.modes.return_level) {
+                (true, _) => plane,
+                (false, None) if self.fanuc() => initial,
+                (false, level) => level.unwrap_or(initial).max(plane),
             };
             self.hole(cycle, [plane, bottom, clear], &sticky)?
         } else {
@@ -127,7 +132,13 @@ impl Reader {
                 format!("above the bottom, {} in {letter}", bottom / unit),
             ));
         };
-        if at[w] < plane && !back {
+        // Fanuc goes across at the height where the tool is, and then to the plane.
+        if at[w] < plane && !back && !self.fanuc() {
+            if self.rules.controller.is_none() {
+                let what = format!("how {name} begins below its plane R");
+                let taken = "up to the plane, then across, as LinuxCNC does: Fanuc goes across first";
+                self.track.assume(Assumption::new(what, taken, "--controller"));
+            }
             at[w] = plane;
             self.give(self.stroke_to(at, self.track.abc, true))?;
         }
@@ -152,8 +163,34 @@ impl Reader {
         Ok(())
     }
 
+    /// The plane R and the bottom. Heights are relative if the block that gave them was, and to where the cycles began
+    /// (Fanuc, Haas); on LinuxCNC the block that drills decides, and they are relative to where the tool is.
+    fn cycle_levels(&mut self, name: &str, levels: [Level; 2], [initial, at]: [f64; 2]) -> [f64; 2] {
+        let absolute = self.modes.absolute;
+        let [plane, bottom] = levels;
+        let kept = plane.from(initial);
+        let kept = [kept, bottom.from(kept)];
+        let [plane, bottom] = levels.map(|level| Level {
+            incremental: !absolute,
+            ..level
+        });
+        let read_anew = plane.from(at);
+        let read_anew = [read_anew, bottom.from(read_anew)];
+        match self.rules.controller {
+            Some(Controller::LinuxCnc) => read_anew,
+            None if kept != read_anew => {
+                let what = format!("the heights R and Z of {name} in or after G91");
+                let taken =
+                    "as Fanuc reads them: each is relative only if its own block is, and R to where the cycles began";
+                self.track.assume(Assumption::new(what, taken, "--controller"));
+                kept
+            }
+            _ => kept,
+        }
+    }
+
     /// Where the tool is when the cycle begins; `None` if a problem before has made that unknown.
-    fn cycle_start(&mut self, words: [Option<f64>; 3], plane: f64) -> Result<Option<[f64; 3]>, NcProblem> {
+    fn cycle_start(&mut self, words: [Option<f64>; 3], plane: Level) -> Result<Option<[f64; 3]>, NcProblem> {
         if let Some(at) = self.track.known() {
             return Ok(Some(at));
         }
@@ -182,7 +219,7 @@ impl Reader {
                 "{} is not known before this cycle: taken as that of its plane R",
                 axis(w)
             ));
-            self.track.xyz[w] = Some(if self.modes.absolute { plane } else { 0.0 });
+            self.track.xyz[w] = Some(if plane.incremental { 0.0 } else { plane.value });
         }
         Ok(self.track.known())
     }
