@@ -29,6 +29,7 @@ pub(crate) struct CycleWords {
     pub plane: Option<Level>,
     pub bottom: Option<Level>,
     pub peck: Option<f64>,
+    /// In seconds.
     pub dwell: Option<f64>,
     /// Sideways shifts of G76 and G87.
     pub shift: Option<[f64; 2]>,

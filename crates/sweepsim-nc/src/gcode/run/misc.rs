@@ -96,15 +96,18 @@ impl Reader {
         Ok(step)
     }
 
-    /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
+    /// G4, by P or by X in seconds.
     pub(crate) fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
-        let fanuc = self.rules.fanuc();
-        let seconds = match block.word('P') {
-            Some(word) if fanuc && word.whole => word.value / 1000.0,
-            Some(word) => word.value,
-            None => block.get('X').unwrap_or(0.0),
-        };
+        let seconds = self.dwell_word(block).or(block.get('X')).unwrap_or(0.0);
         self.track.rest(seconds)
+    }
+
+    /// P of a dwell, in seconds: Fanuc's and Haas's are in milliseconds, if they have no decimal point.
+    pub(super) fn dwell_word(&self, block: &Block) -> Option<f64> {
+        block.word('P').map(|word| match self.rules.fanuc() && word.whole {
+            true => word.value / 1000.0,
+            false => word.value,
+        })
     }
 
     /// Settings of Grbl and TinyG.

@@ -182,6 +182,9 @@ fn what_cycles_do_besides() {
             .any(|event| event.kind == EventKind::Dwell { seconds: 0.5 })
     );
     assert_eq!(found.poses.iter().filter(|pose| !pose.rapid).count(), 2);
+    // With a decimal point, they are seconds.
+    let found = program_with("F100.\nG0 X0. Y0. Z10.\nG82 X5. Z-3. R8. P1.5", &fanuc);
+    assert_eq!(found.events[0].kind, EventKind::Dwell { seconds: 1.5 });
     // All moves of a cycle keep its line.
     assert!(found.poses[1..].iter().all(|pose| pose.line == 3));
 }

@@ -72,11 +72,12 @@ impl Reader {
             value,
             incremental: !absolute,
         };
+        let dwell = self.dwell_word(block);
         let sticky = &mut self.modes.cycle;
         sticky.plane = length('R').map(level).or(sticky.plane);
         sticky.bottom = words[w].map(level).or(sticky.bottom);
         sticky.peck = length('Q').or(sticky.peck);
-        sticky.dwell = block.get('P').or(sticky.dwell);
+        sticky.dwell = dwell.or(sticky.dwell);
         if block.has('I') || block.has('J') {
             sticky.shift = Some([length('I').unwrap_or(0.0), length('J').unwrap_or(0.0)]);
         }
@@ -252,7 +253,7 @@ impl Reader {
                 rapid: true,
             },
             aside,
-            at_bottom: vec![self.dwell_of(words), stop],
+            at_bottom: vec![Self::dwell_of(words), stop],
             at_return: vec![self.spindle(SpindleTurning::Clockwise)],
             ..HoleCycle::default()
         })
@@ -271,7 +272,7 @@ impl Reader {
             end: clear,
             ..HoleCycle::default()
         };
-        let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), self.dwell_of(words));
+        let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), Self::dwell_of(words));
         match cycle {
             73 | 83 => {
                 let Some(peck) = words.peck.map(f64::abs) else {
@@ -326,11 +327,10 @@ impl Reader {
         Ok(hole)
     }
 
-    /// P of cycles: seconds, but milliseconds on Fanuc and Haas.
-    fn dwell_of(&self, words: &CycleWords) -> EventKind {
-        let p = words.dwell.unwrap_or(0.0);
-        let seconds = if self.fanuc() { p / 1000.0 } else { p };
-        EventKind::Dwell { seconds }
+    fn dwell_of(words: &CycleWords) -> EventKind {
+        EventKind::Dwell {
+            seconds: words.dwell.unwrap_or(0.0),
+        }
     }
 
     fn spindle(&self, turning: SpindleTurning) -> EventKind {
