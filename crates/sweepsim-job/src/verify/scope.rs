@@ -1,6 +1,7 @@
 //! What a verdict is about, and what it is not.
 
 use super::asked::material::is_guessed;
+use super::directions::has_walls;
 use crate::base::JobError;
 use crate::request::Input;
 use crate::session::Session;
@@ -65,6 +66,9 @@ fn not_looked_at(session: Session, stopped: bool) -> Vec<NotLookedAt> {
         all.push(NotLookedAt::new("gouges and excess", needs, &["gouge", "excess"]));
     } else if stopped {
         all.push(NotLookedAt::new("excess", "a run without --first", &["excess"]));
+    } else if session.request.judging.first && session.request.directions.is_none() && has_walls(job) {
+        let needs = "a run without --first, or --directions xyz";
+        all.push(NotLookedAt::new("excess on walls", needs, &["excess"]).partly(true));
     }
     let is_bare = |number: &&u32| job.bodies.get(*number).is_none_or(Vec::is_empty);
     let bare: Vec<String> = job.tools.keys().filter(is_bare).map(u32::to_string).collect();
