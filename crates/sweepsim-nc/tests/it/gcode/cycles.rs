@@ -1,6 +1,6 @@
 //! Cycles against their expansion by hand.
 
-use sweepsim_nc::{Controller, EventKind, Program, ReadOptions};
+use sweepsim_nc::{Controller, EventKind, Program, ReadOptions, gcode};
 
 use super::{assert_near, options, program, program_with, tips};
 
@@ -113,6 +113,21 @@ fn relative_heights() {
         let found = program_with(text, &options);
         assert_eq!(found.assumptions.len(), assumed, "{text}");
         assert!(found.assumptions.iter().all(|one| one.what.contains("heights R and Z")));
+    }
+}
+
+/// On Fanuc, the words of a cycle stay for the next one, until the cycles end.
+#[test]
+fn words_of_the_cycle_before() {
+    let text = "G90 F100.\nG0 X0. Y0. Z10.\nG99 G81 X1. Z-5. R2.\nG83 X2. Q4.\nG82 X3. P100\n";
+    assert_eq!(bottoms(text, Controller::Fanuc), [-5.0, -2.0, -5.0, -5.0]);
+    for (text, control) in [
+        (text.to_owned(), Controller::Haas),
+        (text.replace("G83", "G80\nG83"), Controller::Fanuc),
+        (text.replace("G83", "G0 Z9.\nG83"), Controller::Fanuc),
+    ] {
+        let error = gcode::read(&text, &options(control)).unwrap_err().to_string();
+        assert!(error.contains("G83 without Z"), "{error}");
     }
 }
 

@@ -20,15 +20,18 @@ const PECK_CLEARANCE: f64 = 0.254;
 const MOST_REPEATS: u32 = 1_000_000;
 
 impl Reader {
-    /// A cycle begins: nothing of the one before stays, but the height it started from.
+    /// A cycle begins. Of the one before, the height it started from stays; on Fanuc, all of its words do until the cycles end.
     pub(crate) fn begin_cycle(&mut self) {
-        let initial = match self.modes.motion {
-            Some(MotionMode::Cycle(_)) => self.modes.cycle.initial,
-            _ => None,
+        let before = match self.modes.motion {
+            Some(MotionMode::Cycle(_)) => self.modes.cycle,
+            _ => CycleWords::default(),
         };
-        self.modes.cycle = CycleWords {
-            initial,
-            ..CycleWords::default()
+        self.modes.cycle = match self.rules.controller {
+            Some(Controller::Fanuc) => before,
+            _ => CycleWords {
+                initial: before.initial,
+                ..CycleWords::default()
+            },
         };
     }
 
