@@ -76,8 +76,9 @@ pub(crate) struct Modes {
     /// Okuma's G71 Z, in mm: the level that takes the place of where a cycle began.
     pub return_level: Option<f64>,
     pub cycle: CycleWords,
-    /// G16.
+    /// G16, and its last radius and angle.
     pub polar: bool,
+    pub polar_words: [Option<f64>; 2],
     /// G68 and G51.
     pub rotation: Option<WorkFrame>,
     /// The angle of G68, in degrees.

@@ -96,7 +96,19 @@ fn polar_coordinates() {
     let (sin, cos) = 30_f64.to_radians().sin_cos();
     assert_near(&[tips(&found)[1]], &[[10.0 * cos, 10.0 * sin, 5.0]]);
     assert_near(&[tips(&found)[6]], &[[-10.0 * sin, 10.0 * cos, -1.0]]);
-    assert!(gcode::read("G0 X0 Y0 Z0\nG16 G91 X1 Y2", &ReadOptions::default()).is_err());
+    // The radius and the angle stay.
+    let found = program("F100\nG0 X0 Y0 Z5\nG16\nG1 X10 Y0\nY90\nX20\nZ1\nG15\nX3\n");
+    let expected = [
+        [10.0, 0.0, 5.0],
+        [0.0, 10.0, 5.0],
+        [0.0, 20.0, 5.0],
+        [0.0, 20.0, 1.0],
+        [3.0, 20.0, 1.0],
+    ];
+    assert_near(&tips(&found)[1..], &expected);
+    for text in ["G0 X0 Y0 Z0\nG16 G91 X1 Y2", "G0 X0 Y0 Z0\nG16 X1 Y2\nG16 Y3"] {
+        assert!(gcode::read(text, &ReadOptions::default()).is_err());
+    }
 }
 
 #[test]
