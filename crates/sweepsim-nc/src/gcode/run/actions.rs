@@ -275,7 +275,7 @@ impl Reader {
                 let unturned = self.modes.unturned_map();
                 let here = self.modes.rotation.as_ref().map(|turn| turn.then(&unturned));
                 let centre = about(unturned, here.unwrap_or(unturned));
-                let angle = angle + self.turned_before();
+                let angle = angle + self.turned_before()?;
                 let map = WorkFrame::turned(self.modes.plane[2], angle).about(centre);
                 Box::new(move |reader| {
                     reader.modes.rotation = Some(map);
@@ -324,19 +324,17 @@ impl Reader {
     }
 
     /// The angle to which that of a G68 adds. In G91 it adds to the one before on Haas; on Fanuc a parameter decides.
-    fn turned_before(&mut self) -> f64 {
+    fn turned_before(&mut self) -> Result<f64, NcProblem> {
         if self.modes.absolute || self.modes.turned_by == 0.0 {
-            return 0.0;
+            return Ok(0.0);
         }
         if self.rules.controller == Some(Controller::Haas) {
-            return self.modes.turned_by;
+            return Ok(self.modes.turned_by);
         }
-        let (what, taken) = (
-            "whether the angle of a G68 in G91 adds to the one before",
-            "it does not, as on Fanuc with bit 0 of parameter 5400 at 0",
-        );
-        self.track.assume(Assumption::new(what, taken, "G90 with G68"));
-        0.0
+        let what = "whether the angle of a G68 in G91 adds to the one before".to_owned();
+        let taken = "it does not, as on Fanuc with bit 0 of parameter 5400 at 0";
+        self.left_to_control(what, taken, "G90 with G68")?;
+        Ok(0.0)
     }
 
     /// G28 and G30: over the programmed point to the machine's home.

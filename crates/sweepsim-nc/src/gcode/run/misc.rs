@@ -7,6 +7,7 @@ use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader {
@@ -94,6 +95,17 @@ impl Reader {
             }
         }
         Ok(step)
+    }
+
+    /// What only the control knows: an assumption, or an error if none may be made.
+    pub(super) fn left_to_control(&mut self, what: String, taken: &str, settle: &str) -> Result<(), NcProblem> {
+        if self.track.strict() {
+            return Err(NcProblem::syntax(format!(
+                "{what} is left to the control: expected {settle}"
+            )));
+        }
+        self.track.assume(Assumption::new(what, taken, settle));
+        Ok(())
     }
 
     /// G4, by P or by X in seconds.

@@ -113,6 +113,9 @@ fn relative_heights() {
         let found = program_with(text, &options);
         assert_eq!(found.assumptions.len(), assumed, "{text}");
         assert!(found.assumptions.iter().all(|one| one.what.contains("heights R and Z")));
+        let mut strict = options.clone();
+        strict.strict = true;
+        assert_eq!(gcode::read(text, &strict).is_err(), assumed > 0, "{text}");
     }
 }
 

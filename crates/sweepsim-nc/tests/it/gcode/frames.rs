@@ -85,6 +85,10 @@ fn centres_and_angles_of_turns() {
     let half = 50.0_f64.sqrt();
     assert_near(&tips(&found)[1..], &[[half, half, 0.0]]);
     assert!(found.assumptions[0].what.contains("the angle of a G68"));
+    let mut strict = fanuc.clone();
+    strict.strict = true;
+    let error = gcode::read(steps, &strict).unwrap_err().to_string();
+    assert!(error.contains("is left to the control: expected G90"), "{error}");
     // Scales of one axis each are in thousandths too, if they have no decimal point.
     let each = "F100.\nG0 X0. Y0. Z0.\nG51 X0. Y0. Z0. I-1000 J2000 K1.\nG1 X1. Y1. Z1.";
     assert_near(&tips(&program_with(each, &fanuc))[1..], &[[-1.0, 2.0, 1.0]]);

@@ -118,7 +118,7 @@ impl Reader {
             return Ok(());
         };
         let initial = *self.modes.cycle.initial.get_or_insert(at[w]);
-        let [plane, bottom] = self.cycle_levels(&name, [plane, bottom], [initial, at[w]]);
+        let [plane, bottom] = self.cycle_levels(&name, [plane, bottom], [initial, at[w]])?;
         let back = cycle == 87;
         let hole = if back {
             self.back_boring([at[w], plane, bottom], &sticky)?
@@ -141,7 +141,7 @@ impl Reader {
             if self.rules.controller.is_none() {
                 let what = format!("how {name} begins below its plane R");
                 let taken = "up to the plane, then across, as LinuxCNC does: Fanuc goes across first";
-                self.track.assume(Assumption::new(what, taken, "--controller"));
+                self.left_to_control(what, taken, "--controller")?;
             }
             at[w] = plane;
             self.give(self.stroke_to(at, self.track.abc, true))?;
@@ -169,7 +169,7 @@ impl Reader {
 
     /// The plane R and the bottom. Heights are relative if the block that gave them was, and to where the cycles began
     /// (Fanuc, Haas); on LinuxCNC the block that drills decides, and they are relative to where the tool is.
-    fn cycle_levels(&mut self, name: &str, levels: [Level; 2], [initial, at]: [f64; 2]) -> [f64; 2] {
+    fn cycle_levels(&mut self, name: &str, levels: [Level; 2], [initial, at]: [f64; 2]) -> Result<[f64; 2], NcProblem> {
         let absolute = self.modes.absolute;
         let [plane, bottom] = levels;
         let kept = plane.from(initial);
@@ -181,15 +181,15 @@ impl Reader {
         let read_anew = plane.from(at);
         let read_anew = [read_anew, bottom.from(read_anew)];
         match self.rules.controller {
-            Some(Controller::LinuxCnc) => read_anew,
+            Some(Controller::LinuxCnc) => Ok(read_anew),
             None if kept != read_anew => {
                 let what = format!("the heights R and Z of {name} in or after G91");
                 let taken =
                     "as Fanuc reads them: each is relative only if its own block is, and R to where the cycles began";
-                self.track.assume(Assumption::new(what, taken, "--controller"));
-                kept
+                self.left_to_control(what, taken, "--controller")?;
+                Ok(kept)
             }
-            _ => kept,
+            _ => Ok(kept),
         }
     }
 
