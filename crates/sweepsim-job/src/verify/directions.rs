@@ -104,7 +104,7 @@ pub(super) fn compared(session: Session) -> bool {
 }
 
 /// Whether the target has walls, as seen along z of the grid.
-fn has_walls(job: &Job) -> bool {
+pub(super) fn has_walls(job: &Job) -> bool {
     let Some(target) = &job.target else { return false };
     let frame = job.grid.frame();
     target.mesh.triangles.iter().any(|[a, b, c]| {

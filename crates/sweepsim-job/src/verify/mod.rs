@@ -230,7 +230,7 @@ impl Before {
         let distance = target.as_ref().map(Target::distance);
         let certified = findings::describe(report, session, &done, found.as_ref(), distance)?;
         proof::compare_registers(session, report)?;
-        let mut scope = scope::scope(session, sets);
+        let mut scope = scope::scope(session, sets, done.stopped);
         scope.unmet = scope::unmet(session, &stock, sets)?;
         if scope.unmet.is_some() && report.verdict == Some(Verdict::Pass) {
             report.verdict = Some(Verdict::Undecided);
@@ -272,21 +272,16 @@ fn deviating(
     looks: &[Gathered],
 ) -> Result<Deviations, JobError> {
     let job = session.job;
-    let own;
     let remaining: Vec<_> = looks
         .iter()
         .map(|look| slivers::without(&look.dexels, job.tolerance))
         .collect();
-    let along_z = match (&looks[0].deviations[..], &remaining[0]) {
-        // Not known where the first finding was looked for, but nothing was found.
-        ([], remaining) => {
-            own = [TileDeviation::new(stock, remaining, target, AreaShare::Whole)];
-            &own[..]
-        }
-        (known, _) => known,
-    };
+    let first = session.request.judging.first;
     let aside = sets.iter().zip(looks.iter().zip(&remaining)).skip(1);
-    let aside = aside.filter(|(set, _)| matches!(set.purpose, Purpose::Judge { compare: Some(_), .. }));
+    let aside = aside.filter(|(set, _)| match set.purpose {
+        Purpose::Judge { compare, .. } => compare.is_some() || first,
+        _ => false,
+    });
     let known = |(set, (look, remaining)): (&TilingSet, (_, _))| {
         let stock = set.whole_stock(&job.stock);
         let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
@@ -295,17 +290,36 @@ fn deviating(
         Ok((stock, target, look, remaining))
     };
     let aside: Vec<(Dexels, Target, &Gathered, &Cow<Dexels>)> = aside.map(known).collect::<Result<_, JobError>>()?;
-    let mut all = vec![Look {
-        tiles: along_z,
-        stock,
-        remaining: &remaining[0],
-        target,
-    }];
-    all.extend(aside.iter().map(|(stock, target, look, remaining)| Look {
-        tiles: &look.deviations,
-        stock,
-        remaining,
-        target,
-    }));
+    let mut seen = vec![(stock, &looks[0], &remaining[0], target)];
+    seen.extend(
+        aside
+            .iter()
+            .map(|(stock, target, look, remaining)| (stock, *look, *remaining, target)),
+    );
+    // Where the first finding was looked for, nothing is known of them yet.
+    let share = if seen.len() > 1 {
+        AreaShare::OfThree
+    } else {
+        AreaShare::Whole
+    };
+    let own: Vec<Vec<TileDeviation>> = seen
+        .iter()
+        .map(
+            |&(stock, look, remaining, target)| match first && look.deviations.is_empty() {
+                true => vec![TileDeviation::new(stock, remaining, target, share)],
+                false => Vec::new(),
+            },
+        )
+        .collect();
+    let all: Vec<Look> = seen
+        .into_iter()
+        .zip(&own)
+        .map(|((stock, look, remaining, target), own)| Look {
+            tiles: if own.is_empty() { &look.deviations } else { own },
+            stock,
+            remaining,
+            target,
+        })
+        .collect();
     Ok(deviations_along(&all))
 }

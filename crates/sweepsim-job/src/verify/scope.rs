@@ -1,6 +1,7 @@
 //! What a verdict is about, and what it is not.
 
 use super::asked::material::is_guessed;
+use super::directions::has_walls;
 use crate::base::JobError;
 use crate::request::Input;
 use crate::session::Session;
@@ -9,8 +10,8 @@ use crate::warnings::is_beside;
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::{NotLookedAt, Scope, ScopeLines};
 
-/// What was looked at on these tiles, and what was not.
-pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
+/// What was looked at on these tiles, and what was not: not what is left, if the first finding has ended the run.
+pub(super) fn scope(session: Session, sets: &[TilingSet], stopped: bool) -> Scope {
     let mut scope = Scope::default();
     scope.extent = if is_proven(session) { "everywhere" } else { "lines" }.to_owned();
     let judged = sets.iter().filter(|set| matches!(set.purpose, Purpose::Judge { .. }));
@@ -22,7 +23,7 @@ pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
             lines
         })
         .collect();
-    scope.not_looked_at = not_looked_at(session);
+    scope.not_looked_at = not_looked_at(session, stopped);
     scope
 }
 
@@ -51,7 +52,7 @@ fn is_proven(session: Session) -> bool {
     session.request.judging.proof && !session.request.judging.first && !is_guessed(session.plan)
 }
 
-fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
+fn not_looked_at(session: Session, stopped: bool) -> Vec<NotLookedAt> {
     let job = session.job;
     let is_job = match session.request.input() {
         Input::File(file) => file.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron")),
@@ -63,8 +64,11 @@ fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
     if job.target.is_none() {
         let needs = needs("`target` in the job", "--target FILE");
         all.push(NotLookedAt::new("gouges and excess", needs, &["gouge", "excess"]));
-    } else if session.request.judging.first {
+    } else if stopped {
         all.push(NotLookedAt::new("excess", "a run without --first", &["excess"]));
+    } else if session.request.judging.first && session.request.directions.is_none() && has_walls(job) {
+        let needs = "a run without --first, or --directions xyz";
+        all.push(NotLookedAt::new("excess on walls", needs, &["excess"]).partly(true));
     }
     let is_bare = |number: &&u32| job.bodies.get(*number).is_none_or(Vec::is_empty);
     let bare: Vec<String> = job.tools.keys().filter(is_bare).map(u32::to_string).collect();

@@ -181,3 +181,33 @@ fn without_material_on_any_line_nothing_is_decided() {
         assert_eq!(outcome.verdict(), Some(Verdict::Pass), "{}", told(&outcome));
     }
 }
+
+/// A run that looks for the first finding and finds none compares the whole part, along all its directions.
+#[test]
+fn without_a_first_finding_the_part_is_compared() {
+    let first = |walls: [f64; 2]| {
+        let mut judging = Judging::default();
+        (judging.first, judging.proof) = (true, false);
+        request(slotted(walls, -4.0)).judging(judging)
+    };
+    let run = |walls: [f64; 2], directions: Directions| run(first(walls).directions(directions));
+    // 0.1 mm is left on each wall, between the lines along z.
+    let left = run([14.9, 25.1], Directions::Xyz);
+    assert_eq!(left.verdict(), Some(Verdict::Fail));
+    assert!(left.findings().iter().all(|found| found.kind == "excess"));
+    assert!((left.report().excess.unwrap().max - 0.1).abs() < 1e-6);
+    assert!(not_at(&left).iter().all(|about| !about.starts_with("excess")));
+    let along_z = run([14.9, 25.1], Directions::Z);
+    assert_eq!(along_z.verdict(), Some(Verdict::Pass));
+    let lines = |outcome: &Outcome| outcome.report().scope.as_ref().unwrap().lines.len();
+    assert_eq!([lines(&left), lines(&along_z)], [3, 1]);
+    // Without directions it is said that walls were not looked at.
+    let unasked = first([14.9, 25.1]).plan().unwrap().run(&()).unwrap();
+    assert_eq!(unasked.verdict(), Some(Verdict::Pass));
+    assert_eq!(lines(&unasked), 1);
+    assert!(not_at(&unasked).contains(&"excess on walls"));
+    // What is left is not known if a gouge ends the run.
+    let gouged = run([15.1, 24.9], Directions::Xyz);
+    assert!(gouged.findings().iter().all(|found| found.kind == "gouge"));
+    assert!(not_at(&gouged).contains(&"excess"));
+}

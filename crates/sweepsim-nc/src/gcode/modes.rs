@@ -5,13 +5,31 @@ use crate::drive::ArcPlane;
 use crate::machines::WorkFrame;
 use crate::model::program::FeedMode;
 
+/// A height in a drilling cycle (mm), absolute or relative as the block that gave it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Level {
+    pub value: f64,
+    pub incremental: bool,
+}
+
+impl Level {
+    /// Its coordinate, if relative heights start from there.
+    pub fn from(self, start: f64) -> f64 {
+        match self.incremental {
+            true => start + self.value,
+            false => self.value,
+        }
+    }
+}
+
 /// The words of drilling cycles, which stay until the cycle ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CycleWords {
-    /// The plane R and the bottom, in the program's coordinates (mm).
-    pub plane: Option<f64>,
-    pub bottom: Option<f64>,
+    /// The plane R, relative to where the cycles began, and the bottom, relative to the plane.
+    pub plane: Option<Level>,
+    pub bottom: Option<Level>,
     pub peck: Option<f64>,
+    /// In seconds.
     pub dwell: Option<f64>,
     /// Sideways shifts of G76 and G87.
     pub shift: Option<[f64; 2]>,
@@ -58,10 +76,13 @@ pub(crate) struct Modes {
     /// Okuma's G71 Z, in mm: the level that takes the place of where a cycle began.
     pub return_level: Option<f64>,
     pub cycle: CycleWords,
-    /// G16.
+    /// G16, and its last radius and angle.
     pub polar: bool,
+    pub polar_words: [Option<f64>; 2],
     /// G68 and G51.
     pub rotation: Option<WorkFrame>,
+    /// The angle of G68, in degrees.
+    pub turned_by: f64,
     pub scaling: Option<WorkFrame>,
     /// G51.1: where the mirror of each axis is.
     pub mirror: [Option<f64>; 3],
@@ -83,15 +104,17 @@ impl Modes {
 
     /// From the program's coordinates to those that work offsets apply to.
     pub(crate) fn local_map(&self) -> WorkFrame {
-        // Fanuc mirrors and scales first, then turns.
+        let turns = [&self.rotation, &self.tilt].into_iter().flatten();
+        turns.fold(self.unturned_map(), |map, step| step.then(&map))
+    }
+
+    /// From the program's coordinates to those that G68 turns: Fanuc mirrors and scales first.
+    pub(crate) fn unturned_map(&self) -> WorkFrame {
         let mut map = WorkFrame::default();
         if self.mirror.iter().any(Option::is_some) {
             let factors = self.mirror.map(|at| if at.is_some() { -1.0 } else { 1.0 });
             map = WorkFrame::scaled(factors).about(self.mirror.map(|at| at.unwrap_or(0.0)));
         }
-        for step in [&self.scaling, &self.rotation, &self.tilt].into_iter().flatten() {
-            map = step.then(&map);
-        }
-        map
+        self.scaling.as_ref().map_or(map, |scaling| scaling.then(&map))
     }
 }

@@ -264,7 +264,7 @@ impl ToolDescription {
     }
 
     /// A cone with a flat, rounded or spherical end. `radius` is that of the tip, where the corner's circle and the flank's line would
-    /// meet the bottom if it were sharp.
+    /// meet the bottom if it were sharp. A corner of the same radius is a ball on the axis.
     fn tapered(&self, radius: f64, length: f64) -> Result<Cutter, ToolProblem> {
         let taper = angle("taper angle", self.taper_angle)?;
         let corner = self.corner_radius.unwrap_or(0.0);
@@ -277,7 +277,9 @@ impl ToolDescription {
         }
         // The corner touches the bottom and the flank: its centre is `corner` above the bottom and `corner` from the flank.
         let half = (0.5 * (90.0 - taper)).to_radians();
-        let centre = [radius - corner * half.tan(), corner];
+        // Numbers have few digits.
+        let is_ball = (corner - radius).abs() <= 1e-3 * radius;
+        let centre = [if is_ball { 0.0 } else { radius - corner * half.tan() }, corner];
         if centre[0] < -1e-9 * corner {
             let expected = "at most what fits between the axis and the flank";
             return Err(ToolProblem::Measure {

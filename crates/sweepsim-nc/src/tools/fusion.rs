@@ -114,6 +114,11 @@ fn one(entry: &Value, kind: &str) -> ToolDescription {
     {
         tool.diameter = Some(tip);
     }
+    if let (Some(CutterKind::Flat | CutterKind::Bull), Some(angle)) = (&tool.kind, tool.taper_angle) {
+        notes.push(format!(
+            "its taper angle of {angle} degrees is not looked at: taken as a cylinder"
+        ));
+    }
     if let Some(holder) = entry.get("holder") {
         let (unit, note) = unit_of(holder);
         notes.extend(note.map(|note| format!("its holder: {note}")));

@@ -51,3 +51,24 @@ fn pecks_are_the_same_on_all_controls() {
         }
     }
 }
+
+#[test]
+fn boring_has_feeds_of_its_own() {
+    let text = "G0 X0 Y0 Z10 F100\nCYCLE85(10,0,2,-5,,0,150,300)\nG1 X9";
+    let program = siemens::read(text, &ReadOptions::default()).unwrap();
+    let feeds: Vec<_> = program.poses.iter().filter_map(|pose| pose.feed).collect();
+    // Down, up, and the feed of the program again.
+    assert_eq!(feeds, [150.0, 300.0, 100.0]);
+}
+
+#[test]
+fn infeeds_decrease_to_the_least() {
+    let cycle = "CYCL DEF 203 Q200=2 Q201=-20 Q206=150 Q202=7 Q203=0 Q204=40 Q212=2 Q205=3 Q208=500";
+    let text = format!("TOOL CALL 1 Z S9\nL X+5 Y+6 Z+50 R0 FMAX\n{cycle}\nCYCL CALL\n");
+    let program = heidenhain::read(&text, &ReadOptions::default()).unwrap();
+    let feeds = program.poses.iter().filter(|pose| !pose.rapid);
+    let found: Vec<_> = feeds.map(|pose| (pose.pose.tip()[2], pose.feed)).collect();
+    let expected = [-7.0, -12.0, -15.0, -18.0, -20.0].map(|depth| (depth, Some(150.0)));
+    // Q208 is the feed out of the hole.
+    assert_eq!(found, [&expected[..], &[(2.0, Some(500.0))]].concat());
+}

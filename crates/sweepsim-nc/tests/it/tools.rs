@@ -254,6 +254,17 @@ fn what_is_missing_is_named() {
 }
 
 #[test]
+fn a_taper_that_is_not_looked_at_is_a_note() {
+    let geometry = r#""geometry": {"DC": 50, "LCF": 6, "TA": 45}"#;
+    let library = parse(&format!(
+        r#"{{"data": [{{"type": "face mill", {geometry}, "post-process": {{"number": 1}}}}], "version": 36}}"#
+    ));
+    let notes: Vec<_> = library.unwrap().notes.into_iter().map(|note| note.message).collect();
+    let expected = "its taper angle of 45 degrees is not looked at: taken as a cylinder";
+    assert_eq!(notes, [expected]);
+}
+
+#[test]
 fn tapered_mills() {
     let mut tool = ToolDescription::new(CutterKind::Tapered);
     (tool.diameter, tool.taper_angle, tool.flute_length) = (Some(2.0), Some(10.0), Some(20.0));
@@ -276,6 +287,15 @@ fn tapered_mills() {
     // The flank meets the bottom at the radius of the tip.
     let at_bottom = to[0] - to[1] * 10_f64.to_radians().tan();
     assert!((at_bottom - 1.0).abs() < 1e-12, "{at_bottom}");
+    // A corner as large as the tip is a ball on the axis.
+    tool.corner_radius = Some(1.0);
+    let built = tool.build().unwrap();
+    let ProfileSegment::Arc { to, centre, .. } = built.cutter.profile().unwrap().segments()[0] else {
+        panic!("an arc from the tip")
+    };
+    assert_eq!(centre, [0.0, 1.0]);
+    let (sin, cos) = 10_f64.to_radians().sin_cos();
+    assert!((to[0] - cos).abs() < 1e-12 && (to[1] - (1.0 - sin)).abs() < 1e-12);
     tool.corner_radius = Some(3.0);
     assert!(
         tool.build()

@@ -261,29 +261,47 @@ impl Reader {
     /// G68, G51, G51.1 and their ends.
     fn transform(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let centre: [f64; 3] = std::array::from_fn(|k| words[k].or(self.track.xyz[k]).unwrap_or(0.0));
+        // Where the tool is stays where it is, if no centre is given.
+        let about = |given: WorkFrame, here: WorkFrame| -> [f64; 3] {
+            let (given, here) = (given.partial(words), here.partial(self.track.xyz));
+            std::array::from_fn(|k| given[k].or(here[k]).unwrap_or(0.0))
+        };
         let change: Box<dyn FnOnce(&mut Self)> = match code {
             Code::Rotate => {
                 let Some(angle) = block.get('R') else {
                     return Err(NcProblem::syntax("G68 without R: expected the angle"));
                 };
-                // In G91, the angle adds to the one before.
+                // A centre is scaled and mirrored as other points are (Fanuc B-63944EN, *Coordinate system rotation*).
+                let unturned = self.modes.unturned_map();
+                let here = self.modes.rotation.as_ref().map(|turn| turn.then(&unturned));
+                let centre = about(unturned, here.unwrap_or(unturned));
+                let angle = angle + self.turned_before()?;
                 let map = WorkFrame::turned(self.modes.plane[2], angle).about(centre);
-                Box::new(move |reader| reader.modes.rotation = Some(map))
+                Box::new(move |reader| {
+                    reader.modes.rotation = Some(map);
+                    reader.modes.turned_by = angle;
+                })
             }
             Code::CancelRotation => {
                 self.set_tilt(None)?;
-                Box::new(|reader| reader.modes.rotation = None)
+                Box::new(|reader| {
+                    reader.modes.rotation = None;
+                    reader.modes.turned_by = 0.0;
+                })
             }
             Code::Scale => {
-                // `G51 P` may be in thousandths: without a decimal point it is on Fanuc.
-                let whole = self.fanuc() && block.word('P').is_some_and(|word| word.whole);
-                let all = block.get('P').map(|p| if whole { p / 1000.0 } else { p });
-                let factors = ['I', 'J', 'K'].map(|letter| block.get(letter).or(all).unwrap_or(1.0));
+                // Scales may be in thousandths: without a decimal point they are on Fanuc.
+                let factor = |letter| {
+                    let word = block.word(letter)?;
+                    let thousandths = self.fanuc() && word.whole;
+                    Some(if thousandths { word.value / 1000.0 } else { word.value })
+                };
+                let all = factor('P');
+                let factors = ['I', 'J', 'K'].map(|letter| factor(letter).or(all).unwrap_or(1.0));
                 if factors.contains(&0.0) {
                     return Err(NcProblem::value("the scale of G51", 0, "a number other than 0"));
                 }
-                let map = WorkFrame::scaled(factors).about(centre);
+                let map = WorkFrame::scaled(factors).about(about(WorkFrame::default(), self.modes.unturned_map()));
                 Box::new(move |reader| reader.modes.scaling = Some(map))
             }
             Code::CancelScale => Box::new(|reader| reader.modes.scaling = None),
@@ -303,6 +321,20 @@ impl Reader {
             _ => return Ok(()),
         };
         self.reframe(change)
+    }
+
+    /// The angle to which that of a G68 adds. In G91 it adds to the one before on Haas; on Fanuc a parameter decides.
+    fn turned_before(&mut self) -> Result<f64, NcProblem> {
+        if self.modes.absolute || self.modes.turned_by == 0.0 {
+            return Ok(0.0);
+        }
+        if self.rules.controller == Some(Controller::Haas) {
+            return Ok(self.modes.turned_by);
+        }
+        let what = "whether the angle of a G68 in G91 adds to the one before".to_owned();
+        let taken = "it does not, as on Fanuc with bit 0 of parameter 5400 at 0";
+        self.left_to_control(what, taken, "G90 with G68")?;
+        Ok(0.0)
     }
 
     /// G28 and G30: over the programmed point to the machine's home.

@@ -7,6 +7,7 @@ use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
 use crate::model::read_options::Controller;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader {
@@ -96,15 +97,29 @@ impl Reader {
         Ok(step)
     }
 
-    /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
+    /// What only the control knows: an assumption, or an error if none may be made.
+    pub(super) fn left_to_control(&mut self, what: String, taken: &str, settle: &str) -> Result<(), NcProblem> {
+        if self.track.strict() {
+            return Err(NcProblem::syntax(format!(
+                "{what} is left to the control: expected {settle}"
+            )));
+        }
+        self.track.assume(Assumption::new(what, taken, settle));
+        Ok(())
+    }
+
+    /// G4, by P or by X in seconds.
     pub(crate) fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
-        let fanuc = self.rules.fanuc();
-        let seconds = match block.word('P') {
-            Some(word) if fanuc && word.whole => word.value / 1000.0,
-            Some(word) => word.value,
-            None => block.get('X').unwrap_or(0.0),
-        };
+        let seconds = self.dwell_word(block).or(block.get('X')).unwrap_or(0.0);
         self.track.rest(seconds)
+    }
+
+    /// P of a dwell, in seconds: Fanuc's and Haas's are in milliseconds, if they have no decimal point.
+    pub(super) fn dwell_word(&self, block: &Block) -> Option<f64> {
+        block.word('P').map(|word| match self.rules.fanuc() && word.whole {
+            true => word.value / 1000.0,
+            false => word.value,
+        })
     }
 
     /// Settings of Grbl and TinyG.

@@ -310,7 +310,7 @@ impl Reader {
                     .end_compensation(None)
                     .map_err(|problem| (problem, word.span()))?,
                 Code::MachineCoordinates => plan.machine_coordinates = true,
-                Code::Polar(on) => self.modes.polar = on,
+                Code::Polar(on) => (self.modes.polar, self.modes.polar_words) = (on, [None; 2]),
                 code @ (Code::WorkOffset(_) | Code::WorkOffsetByWord | Code::CancelRotation | Code::CancelScale) => {
                     self.act(code, block).map_err(|problem| (problem, word.span()))?;
                 }

@@ -12,6 +12,8 @@ use crate::text::error::{Located, NcProblem};
 pub(crate) trait Variables {
     /// Whether expressions follow Fanuc's rules.
     fn fanuc(&self) -> bool;
+    /// What `ROUND` within a word of a length or an angle rounds to, where that is not a whole number.
+    fn increment(&self, letter: char) -> Option<f64>;
     /// The value of `#index`; `None` if it has none.
     fn numbered(&self, index: u32) -> Result<Option<f64>, NcProblem>;
     /// The value of `#<name>`.
@@ -26,6 +28,9 @@ pub(crate) struct NoVariables;
 impl Variables for NoVariables {
     fn fanuc(&self) -> bool {
         false
+    }
+    fn increment(&self, _: char) -> Option<f64> {
+        None
     }
     fn numbered(&self, _: u32) -> Result<Option<f64>, NcProblem> {
         Ok(Some(0.0))
@@ -45,6 +50,8 @@ const DEEPEST: usize = 60;
 pub(crate) struct Values<'a, 'b> {
     pub cursor: Cursor<'a>,
     pub variables: &'b dyn Variables,
+    /// The letter of the word whose value is read.
+    pub address: Option<char>,
     depth: usize,
 }
 
@@ -53,6 +60,7 @@ impl<'a, 'b> Values<'a, 'b> {
         Self {
             cursor,
             variables,
+            address: None,
             depth: 0,
         }
     }
@@ -179,6 +187,7 @@ impl<'a, 'b> Values<'a, 'b> {
         if !self.cursor.eat(b'#') {
             return Err(self.cursor.unexpected("`#`"));
         }
+        let address = self.address.take();
         let index = match self.cursor.peek() {
             Some(b'<') => return self.cursor.name().map(Target::Name),
             Some(b'#') => {
@@ -200,6 +209,7 @@ impl<'a, 'b> Values<'a, 'b> {
             },
         }
         .unwrap_or(0.0);
+        self.address = address;
         let near = index.round();
         if (index - near).abs() > 1e-4 || !(0.0..=99_999.0).contains(&near) {
             let problem = NcProblem::value("the number of a variable", index, "a whole number from 0 to 99999");
@@ -237,6 +247,11 @@ impl<'a, 'b> Values<'a, 'b> {
         let two = matches!(name.as_str(), "ATAN" | "POW");
         let (first, second) = self.arguments(two)?;
         let whole = start..self.cursor.at;
+        if matches!(name.as_str(), "ROUND" | "RND")
+            && let Some(step) = self.address.and_then(|letter| self.variables.increment(letter))
+        {
+            return Ok((first / step).round() * step);
+        }
         call(&name, first, second, self.variables.fanuc()).map_err(|problem| (problem, whole))
     }
 

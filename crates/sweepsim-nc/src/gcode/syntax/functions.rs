@@ -108,7 +108,11 @@ pub(crate) fn call(name: &str, a: f64, b: Option<f64>, fanuc: bool) -> Result<f6
             domain((-1.0..=1.0).contains(&a))?;
             a.acos().to_degrees()
         }
-        ("ATAN", Some(b)) => a.atan2(b).to_degrees(),
+        // From 0 to 360, as bit 0 of parameter 6004 has it unless it is set.
+        ("ATAN", Some(b)) => match a.atan2(b).to_degrees() {
+            angle if angle < 0.0 && fanuc => angle + 360.0,
+            angle => angle,
+        },
         ("ATAN", None) if fanuc => a.atan().to_degrees(),
         ("ATAN" | "POW", None) => {
             return Err(NcProblem::syntax(format!(

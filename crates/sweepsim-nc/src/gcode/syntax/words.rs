@@ -70,7 +70,10 @@ pub(crate) fn read_from(cursor: Cursor, variables: &dyn Variables, block: &mut B
                 if !values.follows() {
                     return Err(no_value(line, start, letter));
                 }
-                let (value, whole) = match values.value() {
+                values.address = Some(letter);
+                let read = values.value();
+                values.address = None;
+                let (value, whole) = match read {
                     Ok(value) => value,
                     // `X1.2.3`, `FOO`.
                     Err(error)

@@ -1,6 +1,6 @@
 //! Cycles against their expansion by hand.
 
-use sweepsim_nc::{Controller, EventKind, Program};
+use sweepsim_nc::{Controller, EventKind, Program, ReadOptions, gcode};
 
 use super::{assert_near, options, program, program_with, tips};
 
@@ -88,6 +88,89 @@ fn repeats_steps_and_planes() {
     );
 }
 
+/// The bottoms of the holes that a control drills.
+fn bottoms(text: &str, control: Controller) -> Vec<f64> {
+    let found = program_with(text, &options(control));
+    let bottoms = found.poses.iter().filter(|pose| !pose.rapid);
+    bottoms.map(|pose| pose.pose.tip()[2]).collect()
+}
+
+#[test]
+fn relative_heights() {
+    // R and Z that were absolute stay so after G91, but on LinuxCNC.
+    let row = "G90 F100.\nG0 X0. Y0. Z5.\nG98 G81 X1. Z-10. R2.\nG91 X1. K2\n";
+    assert_eq!(bottoms(row, Controller::Fanuc), [-10.0; 3]);
+    assert_eq!(bottoms(&row.replace('K', "L"), Controller::Haas), [-10.0; 3]);
+    let row = row.replace('K', "L");
+    assert_eq!(bottoms(&row, Controller::LinuxCnc), [-10.0, -3.0, -3.0]);
+    // R is relative to the height from which the cycles began, not to the plane where the last one ended.
+    let column = "G90 F100.\nG0 X0. Y0. Z10.\nG91 G99 G81 X1. Z-5. R-8.\nX1.\nX1.\n";
+    assert_eq!(bottoms(column, Controller::Fanuc), [-3.0; 3]);
+    assert_eq!(bottoms(column, Controller::LinuxCnc), [-3.0, -11.0, -19.0]);
+    // A control that nothing tells may be either.
+    let options = ReadOptions::default();
+    for (text, assumed) in [(column, 1), (row.as_str(), 1), (column.trim_end_matches("X1.\n"), 0)] {
+        let found = program_with(text, &options);
+        assert_eq!(found.assumptions.len(), assumed, "{text}");
+        assert!(found.assumptions.iter().all(|one| one.what.contains("heights R and Z")));
+        let mut strict = options.clone();
+        strict.strict = true;
+        assert_eq!(gcode::read(text, &strict).is_err(), assumed > 0, "{text}");
+    }
+}
+
+/// On Fanuc, the words of a cycle stay for the next one, until the cycles end.
+#[test]
+fn words_of_the_cycle_before() {
+    let text = "G90 F100.\nG0 X0. Y0. Z10.\nG99 G81 X1. Z-5. R2.\nG83 X2. Q4.\nG82 X3. P100\n";
+    assert_eq!(bottoms(text, Controller::Fanuc), [-5.0, -2.0, -5.0, -5.0]);
+    for (text, control) in [
+        (text.to_owned(), Controller::Haas),
+        (text.replace("G83", "G80\nG83"), Controller::Fanuc),
+        (text.replace("G83", "G0 Z9.\nG83"), Controller::Fanuc),
+    ] {
+        let error = gcode::read(&text, &options(control)).unwrap_err().to_string();
+        assert!(error.contains("G83 without Z"), "{error}");
+    }
+}
+
+#[test]
+fn cycles_that_begin_below_their_plane() {
+    let text = "G90 F100.\nG0 X0. Y0. Z-5.\nG98 G81 X10. Z-8. R2.\nX20.\n";
+    let heights = |control: Option<Controller>| -> Vec<[f64; 3]> {
+        let mut options = ReadOptions::default();
+        options.controller = control;
+        let found = program_with(text, &options);
+        assert_eq!(found.assumptions.len(), usize::from(control.is_none()));
+        tips(&found)
+    };
+    // Across through the material, as Fanuc does it.
+    let level = |x: f64, z: f64| [x, 0.0, z];
+    let across = [
+        (0.0, -5.0),
+        (10.0, -5.0),
+        (10.0, 2.0),
+        (10.0, -8.0),
+        (10.0, -5.0),
+        (20.0, -5.0),
+    ];
+    assert_near(
+        &heights(Some(Controller::Fanuc))[..6],
+        &across.map(|(x, z)| level(x, z)),
+    );
+    let up = [
+        (0.0, -5.0),
+        (0.0, 2.0),
+        (10.0, 2.0),
+        (10.0, -8.0),
+        (10.0, 2.0),
+        (20.0, 2.0),
+    ];
+    for control in [None, Some(Controller::LinuxCnc)] {
+        assert_near(&heights(control)[..6], &up.map(|(x, z)| level(x, z)));
+    }
+}
+
 #[test]
 fn what_cycles_do_besides() {
     let found = program("S100 M3 F100\nG0 X0 Y0 Z10\nG84 X5 Z-3 R2 P1");
@@ -117,6 +200,9 @@ fn what_cycles_do_besides() {
             .any(|event| event.kind == EventKind::Dwell { seconds: 0.5 })
     );
     assert_eq!(found.poses.iter().filter(|pose| !pose.rapid).count(), 2);
+    // With a decimal point, they are seconds.
+    let found = program_with("F100.\nG0 X0. Y0. Z10.\nG82 X5. Z-3. R8. P1.5", &fanuc);
+    assert_eq!(found.events[0].kind, EventKind::Dwell { seconds: 1.5 });
     // All moves of a cycle keep its line.
     assert!(found.poses[1..].iter().all(|pose| pose.line == 3));
 }

@@ -110,6 +110,12 @@ fn macro_arguments() {
     );
     let text = "F100\nG0 X0 Y0 Z0\nG65 P9 A1. I2. J3. I4. K5.\nM30\nO9\nG1 X#4 Y#7 Z#9\nM99";
     assert_near(&tips(&program_with(text, &fanuc))[1..], &[[2.0, 4.0, 5.0]]);
+    // Both kinds of arguments in one call: the last word of a variable counts.
+    let text = "F100\nG0 X0 Y0 Z0\nG65 P9 A1. I2. J3. I4. D5. X6. H7.\nM30\nO9\nG1 X#1 Y#7 Z#24\nX#4 Y#5 Z#11\nM99";
+    assert_near(
+        &tips(&program_with(text, &fanuc))[1..],
+        &[[1.0, 5.0, 6.0], [2.0, 3.0, 7.0]],
+    );
     // Haas: a part of the same program, and the short form of repeats.
     let haas = options(Controller::Haas);
     let text = "F100\nG0 X0 Y0 Z0\nM97 P100 L2\nM30\nN100 G91 G1 X1.\nM99";
@@ -122,6 +128,25 @@ fn macro_arguments() {
         &tips(&program_with(text, &fanuc))[1..],
         &[[0.0, 1.0, 0.0], [2.0, 1.0, 0.0]],
     );
+}
+
+#[test]
+fn rounding_and_angles_of_fanuc() {
+    let fanuc = options(Controller::Fanuc);
+    // In a word, ROUND is to the least increment; elsewhere to whole numbers.
+    let text = "F100\nG0 X0 Y0 Z0\n#1=1.23456\n#2=ROUND[2.5]\nG1 X[ROUND[#1]+ROUND[2.5]] Y#2 Z-ROUND[#[ROUND[1.2]]]\nG20\nX[ROUND[#1]]";
+    assert_near(
+        &tips(&program_with(text, &fanuc))[1..],
+        &[[3.735, 3.0, -1.235], [1.2346 * 25.4, 3.0, -1.235]],
+    );
+    let linuxcnc = options(Controller::LinuxCnc);
+    let found = program_with("F100\nG0 X0 Y0 Z0\nG1 X[ROUND[1.2]]", &linuxcnc);
+    assert_near(&tips(&found)[1..], &[[1.0, 0.0, 0.0]]);
+    // Angles of two arguments are from 0 to 360.
+    let text = "F100\nG0 X0 Y0 Z0\nG1 X[ATAN[-1]/[-1]] Y[ATAN[1]/[-1]] Z[ATAN[-1]]";
+    assert_near(&tips(&program_with(text, &fanuc))[1..], &[[225.0, 135.0, -45.0]]);
+    let text = text.replace("Z[ATAN[-1]]", "");
+    assert_near(&tips(&program_with(&text, &linuxcnc))[1..], &[[-135.0, 135.0, 0.0]]);
 }
 
 #[test]

@@ -62,12 +62,57 @@ fn scaled_and_mirrored_coordinates() {
 }
 
 #[test]
+fn centres_and_angles_of_turns() {
+    let fanuc = options(Controller::Fanuc);
+    // The centre of a turn is scaled, and the angle is not.
+    let scaled = "F100.\nG0 X0. Y0. Z0.\nG51 X0. Y0. Z0. P2.\nG68 X10. Y0. R90.\nG1 X10. Y0.\nX20.";
+    assert_near(
+        &tips(&program_with(scaled, &fanuc)),
+        &[[0.0; 3], [20.0, 0.0, 0.0], [20.0, 20.0, 0.0]],
+    );
+    // Without a centre, the tool stays where it is: also if coordinates were turned before.
+    let twice = "F100.\nG0 X10. Y0. Z0.\nG68 X0. Y0. R90.\nG1 X20. Y0.\nG68 R180.\nG91 X1.";
+    assert_near(
+        &tips(&program_with(twice, &fanuc)),
+        &[[10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [-1.0, 20.0, 0.0]],
+    );
+    // In G91 angles add on Haas. On Fanuc a parameter decides.
+    let steps = "F100.\nG0 X10. Y0. Z0.\nG91 G68 X0. Y0. R45.\nG68 X0. Y0. R45.\nG90 G1 X10. Y0.\nG69";
+    let found = program_with(steps, &options(Controller::Haas));
+    assert_near(&tips(&found)[1..], &[[0.0, 10.0, 0.0]]);
+    assert_eq!(found.assumptions.len(), 0);
+    let found = program_with(steps, &fanuc);
+    let half = 50.0_f64.sqrt();
+    assert_near(&tips(&found)[1..], &[[half, half, 0.0]]);
+    assert!(found.assumptions[0].what.contains("the angle of a G68"));
+    let mut strict = fanuc.clone();
+    strict.strict = true;
+    let error = gcode::read(steps, &strict).unwrap_err().to_string();
+    assert!(error.contains("is left to the control: expected G90"), "{error}");
+    // Scales of one axis each are in thousandths too, if they have no decimal point.
+    let each = "F100.\nG0 X0. Y0. Z0.\nG51 X0. Y0. Z0. I-1000 J2000 K1.\nG1 X1. Y1. Z1.";
+    assert_near(&tips(&program_with(each, &fanuc))[1..], &[[-1.0, 2.0, 1.0]]);
+}
+
+#[test]
 fn polar_coordinates() {
     let found = program("F100\nG0 X0 Y0 Z5\nG16 G99 G81 X10 Y30 Z-1 R2\nX10 Y120\nG15 G80\nG0 X0 Y0");
     let (sin, cos) = 30_f64.to_radians().sin_cos();
     assert_near(&[tips(&found)[1]], &[[10.0 * cos, 10.0 * sin, 5.0]]);
     assert_near(&[tips(&found)[6]], &[[-10.0 * sin, 10.0 * cos, -1.0]]);
-    assert!(gcode::read("G0 X0 Y0 Z0\nG16 G91 X1 Y2", &ReadOptions::default()).is_err());
+    // The radius and the angle stay.
+    let found = program("F100\nG0 X0 Y0 Z5\nG16\nG1 X10 Y0\nY90\nX20\nZ1\nG15\nX3\n");
+    let expected = [
+        [10.0, 0.0, 5.0],
+        [0.0, 10.0, 5.0],
+        [0.0, 20.0, 5.0],
+        [0.0, 20.0, 1.0],
+        [3.0, 20.0, 1.0],
+    ];
+    assert_near(&tips(&found)[1..], &expected);
+    for text in ["G0 X0 Y0 Z0\nG16 G91 X1 Y2", "G0 X0 Y0 Z0\nG16 X1 Y2\nG16 Y3"] {
+        assert!(gcode::read(text, &ReadOptions::default()).is_err());
+    }
 }
 
 #[test]

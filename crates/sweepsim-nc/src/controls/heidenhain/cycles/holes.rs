@@ -82,12 +82,12 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
     hole.bottom = surface + depth;
     hole.feed = defined.find(206)?;
     hole.out = WayOut::RapidToStart;
-    let pecks = |infeed: f64, decrease: f64| {
+    let pecks = |infeed: f64, [decrease, least]: [f64; 2]| {
         HoleWork::Pecks(Pecks {
             first: surface - infeed,
             infeed,
             decrease,
-            least: 1e-3,
+            least: least.max(1e-3),
             clears: true,
             above: clearance.min(1.0),
             ..Pecks::default()
@@ -97,7 +97,10 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
     match number {
         200 | 203 | 205 => {
             if let Some(infeed) = infeed {
-                hole.work = pecks(infeed, defined.span(212)?.max(0.0));
+                hole.work = pecks(infeed, [defined.span(212)?.max(0.0), defined.span(205)?]);
+            }
+            if let (203, Some(out)) = (number, defined.find(208)?.filter(|feed| *feed > 0.0)) {
+                hole.out = WayOut::FeedToStart(Some(out));
             }
         }
         208 | 262..=267 => {
@@ -109,7 +112,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
                     ..hole.clone()
                 };
                 if let (264, Some(infeed)) = (number, infeed) {
-                    before.work = pecks(infeed, 0.0);
+                    before.work = pecks(infeed, [0.0; 2]);
                 }
                 all.push(before);
             }

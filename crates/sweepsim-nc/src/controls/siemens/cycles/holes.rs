@@ -1,7 +1,7 @@
 //! Drilling cycles.
 
 use super::arguments::Arguments;
-use crate::drive::{HoleCycle, HoleWork, Pecks};
+use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
 use crate::text::error::NcProblem;
 
 /// The drilling cycles.
@@ -61,11 +61,17 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
         _ => get(5),
     };
     let feeds_out = matches!(name, "CYCLE84" | "CYCLE840" | "CYCLE85" | "CYCLE89");
-    Ok(HoleCycle {
+    let mut hole = HoleCycle {
         end: retract,
         work,
         ..HoleCycle::new(reference + clearance, depth, dwell, feeds_out)
-    })
+    };
+    if name == "CYCLE85" {
+        // FFR and RFF: the feeds down and up.
+        hole.feed = arguments.feed(6);
+        hole.out = WayOut::FeedToStart(arguments.feed(7));
+    }
+    Ok(hole)
 }
 
 /// `CYCLE70(RTP, RFP, SDIS, DP, DIATH, H1, FAL, PIT, NT, MID, FFR, TYPTH, PA, PO, …)`: a thread by a mill, within a hole or (`TYPTH` 1) around a stud, at `PA`, `PO`;

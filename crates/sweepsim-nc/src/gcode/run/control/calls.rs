@@ -87,6 +87,9 @@ const ARGUMENTS: [(char, usize); 21] = [
     ('Z', 26),
 ];
 
+/// Sets of I, J and K in one call, at most.
+const SETS: usize = 10;
+
 impl Default for Calls {
     fn default() -> Self {
         Self {
@@ -204,40 +207,32 @@ impl Reader {
         };
         let mut locals: Locals = [None; 34];
         let after = block.span('P').end;
-        let arguments = || block.words().iter().filter(|word| word.span().start >= after);
-        let twice = "IJK"
-            .chars()
-            .any(|letter| arguments().filter(|word| word.letter == letter).count() > 1);
-        if twice {
-            // Argument specification II: A B C, then I J K in turn.
-            let (mut set, mut last) = (0, 0);
-            for word in arguments() {
-                let place = match word.letter {
-                    'A' | 'B' | 'C' => word.letter as usize - 'A' as usize + 1,
-                    'I' | 'J' | 'K' => {
-                        let k = word.letter as usize - 'I' as usize;
-                        set += usize::from(set == 0 || k <= last);
-                        last = k;
-                        4 + 3 * (set - 1) + k
+        // Argument specification II has several sets of I, J and K. It may be mixed with I: the last word of a variable counts.
+        let (mut set, mut last) = (0, 0);
+        let arguments = block.words().iter().filter(|word| word.span().start >= after);
+        for word in arguments.filter(|word| word.letter != 'L') {
+            let place = match ARGUMENTS.iter().find(|(letter, _)| *letter == word.letter) {
+                Some(&(letter @ 'I'..='K', place)) => {
+                    set += usize::from(set == 0 || place <= last);
+                    if set > SETS {
+                        return Err(NcProblem::value(
+                            format!("the number of {letter} in a macro call"),
+                            set,
+                            "at most 10",
+                        ));
                     }
-                    _ => continue,
-                };
-                if let Some(local) = locals.get_mut(place) {
-                    *local = Some(word.value);
+                    last = place;
+                    place + 3 * (set - 1)
                 }
-            }
-        } else {
-            for word in arguments().filter(|word| word.letter != 'L') {
-                match ARGUMENTS.iter().find(|(letter, _)| *letter == word.letter) {
-                    Some(&(_, place)) => locals[place] = Some(word.value),
-                    None => {
-                        return Err(NcProblem::syntax(format!(
-                            "{} cannot be an argument of a macro call",
-                            word.letter
-                        )));
-                    }
+                Some(&(_, place)) => place,
+                None => {
+                    return Err(NcProblem::syntax(format!(
+                        "{} cannot be an argument of a macro call",
+                        word.letter
+                    )));
                 }
-            }
+            };
+            locals[place] = Some(word.value);
         }
         if times == 0 {
             return Ok(Step::Next);

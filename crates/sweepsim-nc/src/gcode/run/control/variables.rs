@@ -275,6 +275,16 @@ impl Variables for Reader {
         self.rules.fanuc()
     }
 
+    fn increment(&self, letter: char) -> Option<f64> {
+        let step = match letter {
+            'A'..='C' => 0.001,
+            'I'..='K' | 'Q' | 'R' | 'U'..='Z' if self.modes.inch => 0.0001,
+            'I'..='K' | 'Q' | 'R' | 'U'..='Z' => 0.001,
+            _ => return None,
+        };
+        self.rules.fanuc().then_some(step)
+    }
+
     fn numbered(&self, index: u32) -> Result<Value, NcProblem> {
         if let Some(value) = self.variables.get(index) {
             return Ok(Some(value));

@@ -4,7 +4,7 @@
 
 use crate::drive::{HoleCycle, HolePlace, HoleWork, Pecks, WayOut};
 use crate::gcode::codes::{MotionMode, SpindleTurning};
-use crate::gcode::modes::CycleWords;
+use crate::gcode::modes::{CycleWords, Level};
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
@@ -20,15 +20,18 @@ const PECK_CLEARANCE: f64 = 0.254;
 const MOST_REPEATS: u32 = 1_000_000;
 
 impl Reader {
-    /// A cycle begins: nothing of the one before stays, but the height it started from.
+    /// A cycle begins. Of the one before, the height it started from stays; on Fanuc, all of its words do until the cycles end.
     pub(crate) fn begin_cycle(&mut self) {
-        let initial = match self.modes.motion {
-            Some(MotionMode::Cycle(_)) => self.modes.cycle.initial,
-            _ => None,
+        let before = match self.modes.motion {
+            Some(MotionMode::Cycle(_)) => self.modes.cycle,
+            _ => CycleWords::default(),
         };
-        self.modes.cycle = CycleWords {
-            initial,
-            ..CycleWords::default()
+        self.modes.cycle = match self.rules.controller {
+            Some(Controller::Fanuc) => before,
+            _ => CycleWords {
+                initial: before.initial,
+                ..CycleWords::default()
+            },
         };
     }
 
@@ -67,11 +70,17 @@ impl Reader {
         let unit = self.unit();
         let length = |letter| block.get(letter).map(|value| value * unit);
         let letter = ['X', 'Y', 'Z'][w];
+        let absolute = self.modes.absolute;
+        let level = |value| Level {
+            value,
+            incremental: !absolute,
+        };
+        let dwell = self.dwell_word(block);
         let sticky = &mut self.modes.cycle;
-        sticky.plane = length('R').or(sticky.plane);
-        sticky.bottom = words[w].or(sticky.bottom);
+        sticky.plane = length('R').map(level).or(sticky.plane);
+        sticky.bottom = words[w].map(level).or(sticky.bottom);
         sticky.peck = length('Q').or(sticky.peck);
-        sticky.dwell = block.get('P').or(sticky.dwell);
+        sticky.dwell = dwell.or(sticky.dwell);
         if block.has('I') || block.has('J') {
             sticky.shift = Some([length('I').unwrap_or(0.0), length('J').unwrap_or(0.0)]);
         }
@@ -84,9 +93,10 @@ impl Reader {
             self.track
                 .assume(Assumption::new(what, taken, format!("R with {name}")));
         }
-        let plane = sticky
-            .plane
-            .or(height.map(|at| if self.modes.absolute { at } else { 0.0 }));
+        let plane = sticky.plane.or(height.map(|value| Level {
+            value,
+            incremental: false,
+        }));
         let (Some(plane), Some(bottom)) = (plane, sticky.bottom) else {
             let missing = if plane.is_none() { 'R' } else { letter };
             return Err(NcProblem::syntax(format!(
@@ -107,17 +117,16 @@ impl Reader {
         let Some(mut at) = self.cycle_start(words, plane)? else {
             return Ok(());
         };
-        let absolute = self.modes.absolute;
         let initial = *self.modes.cycle.initial.get_or_insert(at[w]);
-        let plane = if absolute { plane } else { at[w] + plane };
-        let bottom = if absolute { bottom } else { plane + bottom };
+        let [plane, bottom] = self.cycle_levels(&name, [plane, bottom], [initial, at[w]])?;
         let back = cycle == 87;
         let hole = if back {
             self.back_boring([at[w], plane, bottom], &sticky)?
         } else if bottom <= plane {
-            let clear = match self.modes.retract_to_plane {
-                true => plane,
-                false => self.modes.return_level.unwrap_or(initial).max(plane),
+            let clear = match (self.modes.retract_to_plane, self.modes.return_level) {
+                (true, _) => plane,
+                (false, None) if self.fanuc() => initial,
+                (false, level) => level.unwrap_or(initial).max(plane),
             };
             self.hole(cycle, [plane, bottom, clear], &sticky)?
         } else {
@@ -127,7 +136,13 @@ impl Reader {
                 format!("above the bottom, {} in {letter}", bottom / unit),
             ));
         };
-        if at[w] < plane && !back {
+        // Fanuc goes across at the height where the tool is, and then to the plane.
+        if at[w] < plane && !back && !self.fanuc() {
+            if self.rules.controller.is_none() {
+                let what = format!("how {name} begins below its plane R");
+                let taken = "up to the plane, then across, as LinuxCNC does: Fanuc goes across first";
+                self.left_to_control(what, taken, "--controller")?;
+            }
             at[w] = plane;
             self.give(self.stroke_to(at, self.track.abc, true))?;
         }
@@ -152,8 +167,34 @@ impl Reader {
         Ok(())
     }
 
+    /// The plane R and the bottom. Heights are relative if the block that gave them was, and to where the cycles began
+    /// (Fanuc, Haas); on LinuxCNC the block that drills decides, and they are relative to where the tool is.
+    fn cycle_levels(&mut self, name: &str, levels: [Level; 2], [initial, at]: [f64; 2]) -> Result<[f64; 2], NcProblem> {
+        let absolute = self.modes.absolute;
+        let [plane, bottom] = levels;
+        let kept = plane.from(initial);
+        let kept = [kept, bottom.from(kept)];
+        let [plane, bottom] = levels.map(|level| Level {
+            incremental: !absolute,
+            ..level
+        });
+        let read_anew = plane.from(at);
+        let read_anew = [read_anew, bottom.from(read_anew)];
+        match self.rules.controller {
+            Some(Controller::LinuxCnc) => Ok(read_anew),
+            None if kept != read_anew => {
+                let what = format!("the heights R and Z of {name} in or after G91");
+                let taken =
+                    "as Fanuc reads them: each is relative only if its own block is, and R to where the cycles began";
+                self.left_to_control(what, taken, "--controller")?;
+                Ok(kept)
+            }
+            _ => Ok(kept),
+        }
+    }
+
     /// Where the tool is when the cycle begins; `None` if a problem before has made that unknown.
-    fn cycle_start(&mut self, words: [Option<f64>; 3], plane: f64) -> Result<Option<[f64; 3]>, NcProblem> {
+    fn cycle_start(&mut self, words: [Option<f64>; 3], plane: Level) -> Result<Option<[f64; 3]>, NcProblem> {
         if let Some(at) = self.track.known() {
             return Ok(Some(at));
         }
@@ -182,7 +223,7 @@ impl Reader {
                 "{} is not known before this cycle: taken as that of its plane R",
                 axis(w)
             ));
-            self.track.xyz[w] = Some(if self.modes.absolute { plane } else { 0.0 });
+            self.track.xyz[w] = Some(if plane.incremental { 0.0 } else { plane.value });
         }
         Ok(self.track.known())
     }
@@ -215,7 +256,7 @@ impl Reader {
                 rapid: true,
             },
             aside,
-            at_bottom: vec![self.dwell_of(words), stop],
+            at_bottom: vec![Self::dwell_of(words), stop],
             at_return: vec![self.spindle(SpindleTurning::Clockwise)],
             ..HoleCycle::default()
         })
@@ -234,7 +275,7 @@ impl Reader {
             end: clear,
             ..HoleCycle::default()
         };
-        let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), self.dwell_of(words));
+        let (stop, dwell) = (self.spindle(SpindleTurning::Stopped), Self::dwell_of(words));
         match cycle {
             73 | 83 => {
                 let Some(peck) = words.peck.map(f64::abs) else {
@@ -289,11 +330,10 @@ impl Reader {
         Ok(hole)
     }
 
-    /// P of cycles: seconds, but milliseconds on Fanuc and Haas.
-    fn dwell_of(&self, words: &CycleWords) -> EventKind {
-        let p = words.dwell.unwrap_or(0.0);
-        let seconds = if self.fanuc() { p / 1000.0 } else { p };
-        EventKind::Dwell { seconds }
+    fn dwell_of(words: &CycleWords) -> EventKind {
+        EventKind::Dwell {
+            seconds: words.dwell.unwrap_or(0.0),
+        }
     }
 
     fn spindle(&self, turning: SpindleTurning) -> EventKind {

@@ -65,24 +65,26 @@ impl Reader {
         self.track.stroke(end, abc, rapid, None, self.modes.plane)
     }
 
-    /// X and Y of G16 are a radius and an angle.
-    pub(crate) fn polar(&self, words: [Option<f64>; 3]) -> Result<[Option<f64>; 3], NcProblem> {
+    /// X and Y of G16 are a radius and an angle, of which each stays until it is given again (Fanuc B-63944EN, *Polar coordinate command*).
+    pub(crate) fn polar(&mut self, words: [Option<f64>; 3]) -> Result<[Option<f64>; 3], NcProblem> {
         let [u, v, _] = self.modes.plane;
         if !self.modes.polar || (words[u].is_none() && words[v].is_none()) {
             return Ok(words);
         }
-        let (Some(radius), Some(angle)) = (words[u], words[v]) else {
-            return Err(NcProblem::unsupported(
-                "polar coordinates without both radius and angle are",
-                "expected both in each block of G16",
-            ));
-        };
         if !self.modes.absolute {
             return Err(NcProblem::unsupported(
                 "incremental polar coordinates are",
                 "expected G90 with G16",
             ));
         }
+        let [radius, angle] = self.modes.polar_words;
+        let given = [words[u].or(radius), words[v].or(angle)];
+        let [Some(radius), Some(angle)] = given else {
+            return Err(NcProblem::syntax(
+                "polar coordinates without both radius and angle: expected both in the first block of G16",
+            ));
+        };
+        self.modes.polar_words = given;
         // Angles are degrees, whatever the unit of lengths is.
         let (sin, cos) = (angle / self.unit()).to_radians().sin_cos();
         let mut found = words;
