@@ -137,6 +137,11 @@ fn one_message_with_its_place() {
         (stock, "Mesh(\"text.stl\")".into(), "text.stl: this is not an STL file"),
         (
             stock,
+            "Mesh(\"text.obj\")".into(),
+            "text.obj: the extension of this mesh file is .obj, but must be .stl, .ply, .glb, .3mf, .vtp, .step",
+        ),
+        (
+            stock,
             "Mesh(\"short.stl\")".into(),
             "short.stl: this is not an STL file",
         ),

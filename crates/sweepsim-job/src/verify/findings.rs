@@ -9,6 +9,9 @@ use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCours
 use sweepsim_dexel::DistanceTo;
 use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
 
+/// Less of the target is not said to be outside of the stock, in cubic millimetres.
+const BEYOND: f64 = 5e-4;
+
 pub(super) fn describe(
     report: &mut Report,
     session: Session,
@@ -87,7 +90,8 @@ pub(super) fn describe(
             finding.region = targets::name(region, job.limits.as_ref());
             finding
         }));
-        if found.beyond_stock > 0.0 {
+        // Less is rounding of the lines' ends.
+        if found.beyond_stock >= BEYOND {
             report.notes.push(format!(
                 "{:.3} mm³ of the target are outside the stock: they were missing before the first cut",
                 found.beyond_stock

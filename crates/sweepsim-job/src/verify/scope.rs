@@ -7,6 +7,7 @@ use crate::request::Input;
 use crate::session::Session;
 use crate::shards::{Purpose, TilingSet};
 use crate::warnings::is_beside;
+use std::collections::BTreeSet;
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::{NotLookedAt, Scope, ScopeLines};
 
@@ -70,13 +71,15 @@ fn not_looked_at(session: Session, stopped: bool) -> Vec<NotLookedAt> {
         let needs = "a run without --first, or --directions xyz";
         all.push(NotLookedAt::new("excess on walls", needs, &["excess"]).partly(true));
     }
+    let used: BTreeSet<u32> = job.paths.iter().map(|path| path.tool).collect();
     let is_bare = |number: &&u32| job.bodies.get(*number).is_none_or(Vec::is_empty);
-    let bare: Vec<String> = job.tools.keys().filter(is_bare).map(u32::to_string).collect();
+    let bare: Vec<String> = used.iter().filter(is_bare).map(u32::to_string).collect();
     if !bare.is_empty() {
-        let partly = bare.len() < job.tools.len();
-        let about = match partly {
-            false => "shanks and holders".to_owned(),
-            true => format!("shanks and holders of the tools {}", bare.join(", ")),
+        let partly = bare.len() < used.len();
+        let about = match &bare[..] {
+            _ if !partly => "shanks and holders".to_owned(),
+            [one] => format!("shank and holder of the tool {one}"),
+            _ => format!("shanks and holders of the tools {}", bare.join(", ")),
         };
         let needs = needs(
             "`bodies` in the job",

@@ -84,6 +84,37 @@ fn all_that_was_asked_for_is_green() {
     assert!(page.contains("1 mm apart; between them, gouges"), "{:?}", scope.lines);
 }
 
+/// A tool that no path uses needs no holder; one that is used is named.
+#[test]
+fn only_tools_that_are_used_are_missed() {
+    for (tools, expected) in [
+        (vec![1], None),
+        (vec![1, 2], Some("shank and holder of the tool 2")),
+        (vec![1, 2, 3], Some("shanks and holders of the tools 2, 3")),
+        (vec![2, 3], Some("shanks and holders")),
+    ] {
+        let path = |tool: i32| {
+            format!(
+                "Path(tool: {tool}, poses: [((0.0, 0.0, 3.0), (0.0, 0.0, 1.0)), ((9.0, 0.0, 3.0), (0.0, 0.0, 1.0))]), "
+            )
+        };
+        let paths: String = tools.into_iter().map(path).collect();
+        let text = format!(
+            "Job(
+                tolerance: 1e-4,
+                grid: Grid(min: (0.0, 0.0), max: (10.0, 10.0), cells: (10, 10)),
+                stock: Block(min: (0.0, 0.0, 0.0), max: (10.0, 10.0, 5.0)),
+                tools: {{ 1: Flat(radius: 2.0, length: 20.0), 2: Ball(radius: 2.0, length: 20.0), 3: Ball(radius: 1.0, length: 20.0) }},
+                bodies: {{ 1: [ Holder(Profile(start: (0.0, 20.0), segments: [ Line((5.0, 20.0)), Line((5.0, 30.0)), Line((0.0, 30.0)) ])) ] }},
+                paths: [ {paths} ],
+            )"
+        );
+        let outcome = run(Request::from_job("job.ron", text));
+        let named = not_at(&outcome).into_iter().find(|about| about.starts_with("shank"));
+        assert_eq!(named, expected);
+    }
+}
+
 #[test]
 fn directions_are_those_that_were_looked_along() {
     let along = |request: Request| {

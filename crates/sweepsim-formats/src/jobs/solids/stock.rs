@@ -151,12 +151,11 @@ impl JobReader<'_> {
             let faces = TargetFaces::of(&part);
             return Ok((part.mesh.soup().unwrap_or_default(), colours, Some(faces)));
         }
-        let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
-        let (mesh, colours) = if known {
+        let (mesh, colours) = if MeshFormat::of(&file) == Some(MeshFormat::Stl) {
+            (self.named(read_stl(&file), &file, what, steps)?, Vec::new())
+        } else {
             let (mesh, colours) = self.named(read_coloured_mesh_file(&file), &file, what, steps)?;
             (mesh.soup().unwrap_or_default(), colours)
-        } else {
-            (self.named(read_stl(&file), &file, what, steps)?, Vec::new())
         };
         let mesh = if self.unit == 1.0 {
             mesh
