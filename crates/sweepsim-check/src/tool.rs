@@ -90,8 +90,8 @@ pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body
 /// A cylinder between two solids is narrower than the tool by this part.
 const NARROWER: f64 = 1e-9;
 
-/// The solids of a tool, and cylinders that lead from one of them into the next: below where the outline was cut, both
-/// ends of it are in the one, above in the other.
+/// The solids of a tool, and cylinders that lead from one of them into the next. Both ends of what is below the cut are
+/// in the one solid, both ends of what is above in the other: so all of a cylinder is in the tool.
 pub(crate) fn bridged(bodies: &[Body]) -> Vec<Body> {
     let bridges = bodies.windows(2).filter_map(|pair| bridge(&pair[0], &pair[1]));
     bodies.iter().cloned().chain(bridges).collect()

@@ -55,7 +55,12 @@ pub fn measure(value: f64) -> String {
 }
 
 /// Digits in groups of three.
-fn grouped(digits: &str) -> String {
+///
+/// ```
+/// assert_eq!(["999", "1234567"].map(sweepsim_report::grouped), ["999", "1,234,567"]);
+/// ```
+#[must_use]
+pub fn grouped(digits: &str) -> String {
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
         if place > 0 && (digits.len() - place).is_multiple_of(3) {

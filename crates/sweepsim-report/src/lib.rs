@@ -41,7 +41,7 @@ mod viewer;
 
 pub use axes::AxisPlot;
 pub use findings::{Excerpt, Finding};
-pub use html::measure;
+pub use html::{grouped, measure};
 pub use page::{Page, Picture, Verdict, VerdictState};
 pub use plots::{Bar, Histogram, Plot};
 pub use scene::{

@@ -3,15 +3,7 @@
 /// `1234567` as `1,234,567`.
 #[must_use]
 pub fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+    sweepsim_report::grouped(&number.to_string())
 }
 
 /// A number of things, with an `s` in the plural.

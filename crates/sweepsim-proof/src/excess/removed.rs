@@ -209,8 +209,8 @@ impl Removed<'_> {
     pub fn held_anywhere(&self, points: &[Vector3<f64>], middle: &Vector3<f64>) -> Option<Known> {
         let mut deepest: Option<(f64, Holder)> = None;
         for (course, own) in self.courses.iter().enumerate() {
-            for (solid, CourseSolid { level, boxes, .. }) in own.solids.iter().enumerate() {
-                if !own.solids[solid].convex.is_exact() {
+            for (solid, CourseSolid { convex, level, boxes }) in own.solids.iter().enumerate() {
+                if !convex.is_exact() {
                     continue;
                 }
                 boxes.around(middle, middle, &mut |stretch| {

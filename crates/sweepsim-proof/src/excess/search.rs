@@ -253,7 +253,7 @@ impl Scene<'_> {
                 break;
             }
             let known = left.highest.map_or(0.0, |(_, height)| height);
-            let above = known.max(limits.expected()) + limits.width.max(SHARE * known);
+            let above = known.max(limits.expected_within()) + limits.width.max(SHARE * known);
             let is_undecided = known < limits.depth && distance < limits.depth;
             let has_room = left.patches + 2 * reserve < budget;
             distance = match found.is_left && above > distance {

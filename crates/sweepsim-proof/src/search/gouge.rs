@@ -54,7 +54,7 @@ impl Limits {
     }
 
     /// What is expected, unless that is beyond the limit: whether it is kept is to be known.
-    pub(crate) fn expected(&self) -> f64 {
+    pub(crate) fn expected_within(&self) -> f64 {
         if self.expected < self.depth { self.expected } else { 0.0 }
     }
 }
@@ -142,7 +142,7 @@ pub fn deepest_from(
                 enough
             }),
             known,
-            settled: match limits.expected() {
+            settled: match limits.expected_within() {
                 expected if look > 0 && expected > 0.0 => {
                     let room = limits.width.max(ROOM * (limits.depth - expected));
                     limits.depth.min(expected + room)
