@@ -12,7 +12,7 @@ use thiserror::Error;
 /// What a certificate says that it is.
 const FORMAT: &str = "sweepsim certificate";
 /// Certificates of other versions are refused.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// The last field of the file.
 const DIGEST: &str = ",\"digest\":\"";
 /// Trees of more bytes are not taken.

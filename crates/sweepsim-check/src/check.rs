@@ -7,7 +7,7 @@ use crate::height::{Left, off, patches};
 use crate::motion::{Run, Stretch};
 use crate::scene::{Course, Measure, Motion, Question, Scene};
 use crate::surface::Surface;
-use crate::tool::{Body, Cutting, bodies, bridged};
+use crate::tool::{Body, Cutting, bodies, bridged, cores};
 use crate::tree::{Checked, walked};
 use crate::vector::{EPS, MORE, add, norm, norm_up, scaled, sub};
 use crate::zone::Ring;
@@ -32,12 +32,14 @@ pub fn check(scene: &Scene, question: &Question, claim: &Claim, threads: usize) 
     }
 }
 
-/// What is claimed in answer to a question, with the solids of all that moves.
+/// What is claimed in answer to a question, with the solids that cover all that moves; and those that this holds, and
+/// what cuts.
 struct Asked<'a> {
     scene: &'a Scene,
     question: &'a Question,
     claim: &'a Claim,
     movers: &'a [Vec<Body>],
+    within: &'a [Vec<Body>],
     threads: usize,
 }
 
@@ -49,25 +51,28 @@ fn found(scene: &Scene, question: &Question, claim: &Claim, threads: usize) -> R
     if claim.about != question.about || !claim.bound.is_finite() || !is_length(scene.deviation) {
         return Err("the claim does not answer the question".into());
     }
-    let mut movers: Vec<Vec<Body>> = Vec::with_capacity(question.movers.len());
+    let (mut movers, mut within) = (Vec::new(), Vec::new());
     for (number, (path, outline)) in question.movers.iter().chain(&question.cutters).enumerate() {
         let (outline, cover) = (scene.outlines.get(*outline), claim.covers.get(number));
         let (outline, cover) = outline
             .zip(cover)
             .ok_or("something that moves has no outline, or no cover")?;
-        movers.push(bodies(outline, cover)?);
+        let own = bodies(&outline.curves, cover)?;
+        within.push(bridged([own.clone(), cores(&outline.cores)?].concat()));
+        movers.push(own);
         scene.paths.get(*path).ok_or("something that moves has no path")?;
     }
-    let cutters: Vec<_> = movers.drain(question.movers.len()..).map(|own| bridged(&own)).collect();
+    movers.truncate(question.movers.len());
     let asked = Asked {
         scene,
         question,
         claim,
         movers: &movers,
+        within: &within,
         threads,
     };
     if matches!(question.measure, Measure::Material | Measure::MaterialInRapids) {
-        return asked.material(&cutters);
+        return asked.material();
     }
     let triangles = scene.solids.get(question.solid).ok_or("there is no such solid")?;
     let surface = Surface::new(triangles)?;
@@ -143,12 +148,13 @@ impl Asked<'_> {
             .collect()
     }
 
-    fn material(&self, cutters: &[Vec<Body>]) -> Result<Checked, String> {
+    fn material(&self) -> Result<Checked, String> {
         if self.claim.witness.is_some() {
             return Err("depths in material have no witness".into());
         }
         self.each_once()?;
         let does = |motion: &Motion| !motion.possible && !motion.idle;
+        let cutters = &self.within[self.movers.len()..];
         let clear = Clear {
             scene: self.scene,
             cutters: self.cutting(&self.question.cutters, cutters, does),
@@ -226,7 +232,7 @@ impl Asked<'_> {
             let deep = surface.nearest(&place).0 - (norm_up(&sub(&inner, &place)) + self.scene.deviation) * MORE;
             is_in && deep >= witness.depth
         };
-        let movers = self.question.movers.iter().zip(self.movers);
+        let movers = self.question.movers.iter().zip(self.within);
         let mut own = movers.filter(|((path, _), _)| *path == witness.path);
         if surface.is_outside(&place) == Some(false) && own.any(|(_, bodies)| bodies.iter().any(is_in)) {
             return Ok(());
@@ -266,11 +272,10 @@ impl Asked<'_> {
         if end != patches.len() {
             return Err("not all patches have a tree".into());
         }
-        let cutters: Vec<_> = self.movers.iter().map(|own| bridged(own)).collect();
         let left = Left {
             scene,
             surface,
-            movers: self.cutting(&self.question.movers, &cutters, |motion| !motion.possible),
+            movers: self.cutting(&self.question.movers, self.within, |motion| !motion.possible),
             distance: claim.bound,
         };
         self.all(|tree, bytes| walked(&left, &patches[tree.first..tree.first + tree.count], bytes))

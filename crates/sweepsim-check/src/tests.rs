@@ -179,7 +179,7 @@ fn cylinders_between_solids_are_parts_of_the_tool() {
             outline
         };
         let below = outline.len() - 3;
-        let all = bridged(&bodies(&outline, &[[below, 1], [1, 1], [2, 1]]).expect("a tool"));
+        let all = bridged(bodies(&outline, &[[below, 1], [1, 1], [2, 1]]).expect("a tool"));
         assert_eq!(all.len(), 5);
         let radius = |z: f64| match z {
             ..0.0 | 14.0.. => f64::NEG_INFINITY,

@@ -4,10 +4,10 @@
 //! any set that holds that part of the outline, and of the axis beside it, turned about the axis. A certificate says
 //! which curves of the outline make one solid, or into how many parts a curve is cut; the solids are made here.
 //!
-//! **Inside.** If the outline never falls, the tool is all that is nearer to the axis than it. Where consecutive lines
+//! **Inside.** Of what it holds, a tool may have convex polygons, turned about the axis. Or if the outline never falls, the tool is all that is nearer to the axis than it. Where consecutive lines
 //! and arcs of it turn left, the tool beside them is convex: what is between points in it is in it.
 
-use crate::scene::{Curve, Outline};
+use crate::scene::Curve;
 use crate::vector::{EPS, MORE, V3, dot, norm, scaled, sub};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -55,8 +55,8 @@ fn cross2(a: P2, b: P2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The solids of a tool, for each entry of a cover: so many curves together, or one in so many parts.
-pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body>, String> {
+/// The solids of an outline, for each entry of a cover: so many curves together, or one in so many parts.
+pub(crate) fn bodies(outline: &[Curve], cover: &[[usize; 2]]) -> Result<Vec<Body>, String> {
     let (mut all, mut at) = (Vec::new(), 0_usize);
     let rises = outline
         .iter()
@@ -87,14 +87,35 @@ pub(crate) fn bodies(outline: &Outline, cover: &[[usize; 2]]) -> Result<Vec<Body
         .ok_or("a cover does not cover its tool".into())
 }
 
+/// Convex solids, of their corners.
+pub(crate) fn cores(all: &[Vec<P2>]) -> Result<Vec<Body>, String> {
+    let core = |corners: &Vec<P2>| {
+        let line = |ends: &[P2]| Curve::Bezier(ends.iter().map(|end| (*end, 1.0)).collect());
+        let lines: Vec<Curve> = corners.windows(2).map(line).collect();
+        let body = bodies(&lines, &[[lines.len(), 1]]).ok()?.pop()?;
+        let is_whole = corners[0][0] == 0.0 && corners[corners.len() - 1][0] == 0.0;
+        // Nothing leads from one into another.
+        (is_whole && body.sides.is_some()).then(|| Body {
+            pieces: Vec::new(),
+            ..body
+        })
+    };
+    let all = all.iter().map(core).collect::<Option<_>>();
+    all.ok_or("a core of a tool is not convex".into())
+}
+
 /// A cylinder between two solids is narrower than the tool by this part.
 const NARROWER: f64 = 1e-9;
 
 /// The solids of a tool, and cylinders that lead from one of them into the next. Both ends of what is below the cut are
 /// in the one solid, both ends of what is above in the other: so all of a cylinder is in the tool.
-pub(crate) fn bridged(bodies: &[Body]) -> Vec<Body> {
-    let bridges = bodies.windows(2).filter_map(|pair| bridge(&pair[0], &pair[1]));
-    bodies.iter().cloned().chain(bridges).collect()
+pub(crate) fn bridged(mut bodies: Vec<Body>) -> Vec<Body> {
+    let bridges: Vec<Body> = bodies
+        .windows(2)
+        .filter_map(|pair| bridge(&pair[0], &pair[1]))
+        .collect();
+    bodies.extend(bridges);
+    bodies
 }
 
 fn bridge(below: &Body, above: &Body) -> Option<Body> {

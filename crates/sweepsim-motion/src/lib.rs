@@ -26,8 +26,8 @@ pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
 pub use segment::{Segment, SegmentEnd, turned_back};
 pub use spline_motion::{MotionError, SplineMotion};
 pub use tool::{
-    Apt, AptError, AptWarning, Barrel, BoundingCylinder, Dovetail, Lens, Lollipop, MeridianCurve, MeridianShape, Oval,
-    Taper, Tool,
+    Apt, AptError, AptWarning, Barrel, BoundingCylinder, Bounds, Dovetail, Lens, Lollipop, MeridianCurve,
+    MeridianShape, Oval, Taper, Tool,
 };
 
 /// The README's example is tested.

@@ -5,15 +5,17 @@ use crate::motion::{Cutter, Piece};
 use crate::process::Touched;
 use crate::search::{Closest, Enclosed, Tree};
 use crate::solid::Target;
+use crate::tool::{Convex, cores, cover};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use sweepsim_check::{Claim, Course, Curve, Motion, Outline, Question, Scene, Witness, packed};
 use sweepsim_motion::{MeridianCurve, MeridianShape, Segment, Tool};
 
-/// The outline of a tool; of one without, the points in whose hull it is, turned about the axis.
+/// The outline of a tool; of one without, that of solids that [cover] it. With what it holds for certain, if it
+/// cuts.
 #[must_use]
-pub fn outline(tool: &Tool) -> Outline {
+pub fn outline(tool: &Tool, cuts: bool) -> Outline {
     let curve = |curve: MeridianCurve| match curve.shape {
         MeridianShape::Line => Curve::Bezier([curve.from, curve.to].map(|end| (end, 1.0)).to_vec()),
         MeridianShape::Arc {
@@ -28,18 +30,22 @@ pub fn outline(tool: &Tool) -> Outline {
         },
         _ => Curve::Bezier(curve.controls),
     };
-    let curves: Vec<Curve> = tool.meridians().into_iter().map(curve).collect();
-    if !curves.is_empty() {
-        return curves;
+    let mut curves: Vec<Curve> = tool.meridians().into_iter().map(curve).collect();
+    if curves.is_empty() {
+        let sides = |solid: Convex| {
+            solid
+                .corners()
+                .windows(2)
+                .map(|side| Curve::Hull(side.to_vec()))
+                .collect()
+        };
+        curves = cover(tool, 0.0).into_iter().flat_map::<Vec<Curve>, _>(sides).collect();
     }
-    let mut points = Vec::new();
-    for patch in tool.patches() {
-        for (i, weight) in patch.weight().coefficients().iter().enumerate() {
-            let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
-            points.push([x.hypot(y), z]);
-        }
+    let cores = if cuts { cores(tool) } else { Vec::new() };
+    Outline {
+        curves,
+        cores: cores.iter().map(|core| core.corners().to_vec()).collect(),
     }
-    vec![Curve::Hull(points)]
 }
 
 /// The motions of a path, in the order in which proofs look at them. `is_idle`: whether a move must not cut.
@@ -106,12 +112,13 @@ fn movers(scene: &Scene, asked: &[(usize, usize)], cutters: Answering) -> Option
         let number = cutters.iter().position(|(own, _)| own == path)?;
         let solids = cutters[number].1.solids;
         let (first, mut curves, mut cover) = (taken[number], 0, Vec::new());
-        while curves < scene.outlines[*outline].len() {
+        while curves < scene.outlines[*outline].curves.len() {
             let [count, parts] = solids.get(taken[number])?.cut();
             curves += count;
             taken[number] += parts;
             cover.push([count, parts]);
         }
+        taken[number] += scene.outlines[*outline].cores.len();
         Some((number, first, cover))
     };
     asked.iter().map(one).collect()
@@ -138,7 +145,13 @@ fn trees(
             bytes: packed(&tree.bytes),
         })
     };
-    let trees = all.par_iter().map(one).collect::<Option<_>>()?;
+    let is_cover = |tree: &&Tree| {
+        let own = cutters
+            .get(tree.path)
+            .and_then(|(_, cutter)| cutter.solids.get(tree.solid));
+        !own.is_some_and(Convex::is_core)
+    };
+    let trees = all.par_iter().filter(is_cover).map(one).collect::<Option<_>>()?;
     Some((movers.into_iter().map(|(_, _, cover)| cover).collect(), trees))
 }
 

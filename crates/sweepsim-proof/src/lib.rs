@@ -25,7 +25,7 @@ pub use recall::{QuestionDigest, Recall};
 pub use search::{Closest, Enclosed, Limits, Tree, closest, closest_from, deepest, deepest_from};
 pub use solid::Target;
 pub use statement::{OpenBox, Witness};
-pub use tool::{Convex, cover};
+pub use tool::{Convex, cover, cover_and_cores};
 
 pub use {sweepsim_dexel, sweepsim_motion};
 

@@ -54,7 +54,7 @@ impl Bezier {
     }
 
     /// Both halves. Their weights are not in standard form.
-    pub(super) fn halves(&self) -> (Self, Self) {
+    pub fn halves(&self) -> (Self, Self) {
         let mut high = self.homogeneous();
         let mut low = high.clone();
         kernel::split_line(&mut high, &mut low, 0.5, 0.5);

@@ -38,6 +38,7 @@ fn bounding_cylinder(profile: Option<&Profile>, patches: &[Patch]) -> BoundingCy
     bound
 }
 
+mod bounds;
 #[cfg(test)]
 mod circle_segment_tests;
 mod cutters;
@@ -46,12 +47,14 @@ mod meridian;
 mod surfaces;
 
 pub use apt::{Apt, AptError, AptWarning};
+pub use bounds::Bounds;
 pub use measures::{Barrel, Dovetail, Lens, Lollipop, Oval, Taper};
 pub use meridian::{MeridianCurve, MeridianShape};
 
 use crate::boundary::{self, Edge, Patch, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment};
 use nalgebra::Vector3;
+use std::sync::{Arc, OnceLock};
 use sweepsim_spline::RationalSpline;
 
 /// A cylinder about the tool's axis.
@@ -78,6 +81,8 @@ pub struct Tool {
     cylinder: BoundingCylinder,
     /// Within which patches join.
     tolerance: f64,
+    /// Computed when they are asked for.
+    bounds: Arc<OnceLock<Bounds>>,
 }
 
 impl Tool {
@@ -85,6 +90,7 @@ impl Tool {
     fn new(profile: Option<Profile>, patches: Vec<Patch>, edges: Vec<Edge>, tolerance: f64) -> Self {
         Self {
             tolerance,
+            bounds: Arc::default(),
             reach: reach(&patches),
             cylinder: bounding_cylinder(profile.as_ref(), &patches),
             profile,

@@ -10,7 +10,7 @@ fn face(corners: [[f64; 3]; 4]) -> Patch {
 }
 
 /// A prism of a height over unit squares with these lower corners.
-fn prism(squares: &[[i32; 2]], height: f64) -> Tool {
+pub fn prism(squares: &[[i32; 2]], height: f64) -> Tool {
     let mut faces = Vec::new();
     for [i, j] in squares {
         let at = |x: i32, y: i32, z: f64| [f64::from(i + x), f64::from(j + y), z];

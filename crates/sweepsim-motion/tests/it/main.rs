@@ -2,6 +2,7 @@
 
 mod below;
 mod boundary;
+mod bounds;
 mod checked_boundary;
 mod misuse;
 mod motions;

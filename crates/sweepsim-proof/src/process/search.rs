@@ -272,7 +272,7 @@ impl Scene<'_> {
             Movers::Rapids => work.cutter.solids,
         };
         let mut found = Found::default();
-        for solid in movers {
+        for solid in movers.iter().filter(|solid| !solid.is_core()) {
             let run = Run::new(solid, &stretches, self.margin.abs());
             let room = self.room.distance.max(0.0) + self.margin.abs();
             let (low, high) = (self.bounds[0].map(|c| c - room), self.bounds[1].map(|c| c + room));

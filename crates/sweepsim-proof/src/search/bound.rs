@@ -244,9 +244,9 @@ impl Above<'_> {
         // Away from the axis, or beyond one of its ends.
         let away = self.during.core(&self.cell.centre) - self.cell.centre;
         let axis = self.during.ends[0].axis;
-        let starts = [away, axis, -axis].into_iter().filter_map(|start| Normal::near(&start));
-        let best = starts.map(|normal| (gap(&normal.vector), normal));
-        let (mut value, mut short) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let measured = |start: Vector3<f64>| Normal::near(&start).map(|normal| (gap(&normal.vector), normal));
+        let starts = [away, axis, -axis].into_iter().filter_map(measured);
+        let (mut value, mut short) = starts.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let mut normal = short.vector;
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..2 * STEPS {
@@ -265,7 +265,10 @@ impl Above<'_> {
                 step *= 0.25;
             }
         }
-        (value > gap_needed).then_some(short.written)
+        // A step from the axis of what ends flat leads anywhere; straight from the solid costs more.
+        let nearest = self.during.towards(&self.cell.centre).and_then(measured);
+        let best = nearest.filter(|own| own.0 > value).unwrap_or((value, short));
+        (best.0 > gap_needed).then_some(best.1.written)
     }
 }
 

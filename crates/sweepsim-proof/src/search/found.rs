@@ -74,6 +74,11 @@ impl Found {
         self.take(other.deepest, other.moves, other.pairs);
     }
 
+    /// With the places that were found to be deep in a part of what is bounded.
+    pub fn seen(&mut self, other: Self) {
+        self.take(other.deepest, other.moves, other.pairs);
+    }
+
     /// What is known after an earlier look at the same.
     pub fn after(mut self, earlier: Self) -> Self {
         if earlier.pairs > 0 && earlier.bound < self.bound {

@@ -278,8 +278,19 @@ fn look(
             wanted.pairs = wanted.pairs.min(FIRST_LOOK);
         }
         let run = Run::new(solid, &stretches, wanted.slack);
-        let found = Search::new((target, root), &run, wanted).run();
-        all.beside(found);
+        let look = |wanted| Search::new((target, root), &run, wanted).run();
+        if solid.is_core() {
+            // It is deep only where what covers it is.
+            if all.bound > limits.depth {
+                all.seen(look(Wanted {
+                    recorded: false,
+                    ..wanted
+                }));
+            }
+            all.trees.push(Vec::new());
+            continue;
+        }
+        all.beside(look(wanted));
     }
     all
 }

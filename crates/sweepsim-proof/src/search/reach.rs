@@ -26,14 +26,29 @@ impl During<'_> {
         (number, self.run.farthest(&self.ends[number], direction))
     }
 
-    /// A point on the axis of the solid that is about as near to another point as one is.
-    pub fn core(&self, point: &Vector3<f64>) -> Vector3<f64> {
+    /// A point on the axis of the solid that is about as near to another point as one is; and the solid's tip there.
+    fn nearest(&self, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         let [low, high] = self.run.solid.heights();
         let on_axis = |end: &Placement| end.tip + end.axis * (point - end.tip).dot(&end.axis).clamp(low, high);
         let (first, last) = (&self.ends[0], &self.ends[self.ends.len() - 1]);
         let [a, b] = [on_axis(first), on_axis(last)];
         let way = b - a;
-        let part = (point - a).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE);
-        a + way * part.clamp(0.0, 1.0)
+        let part = ((point - a).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (a + way * part, first.tip + (last.tip - first.tip) * part)
+    }
+
+    /// That point of the axis.
+    pub fn core(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.nearest(point).0
+    }
+
+    /// About the direction from a point to the solid where it is nearest, if it is outside.
+    pub fn towards(&self, point: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let (off, axis) = (point - self.nearest(point).1, self.ends[0].axis);
+        let along = off.dot(&axis);
+        let across = off - axis * along;
+        let rho = across.norm();
+        let [out, up] = self.run.solid.away([rho, along])?;
+        Some(-(across * (out / rho.max(f64::MIN_POSITIVE)) + axis * up))
     }
 }

@@ -2,21 +2,26 @@
 
 use nalgebra::Vector3;
 
+/// So many corners are looked at one by one.
+const FEW: usize = 8;
+
 /// The hull of points and arcs in the half-plane `(ρ, ζ)`, turned about the axis `ρ = 0`.
 ///
 /// All that a proof needs of it is the [support function](Self::support): how far it reaches in a direction.
 #[derive(Clone, Debug, Default)]
 pub struct Convex {
-    /// Points `(ρ, ζ)`, `ρ ≥ 0`: those of their own hull, counter-clockwise.
+    /// Points `(ρ, ζ)`, `ρ ≥ 0`: those of their own hull, counter-clockwise from the lowest on the axis.
     pub(super) corners: Vec<[f64; 2]>,
     pub(super) arcs: Vec<ConvexArc>,
     /// Whether every point is one of the tool, so that a point of it is a witness.
     pub(super) exact: bool,
-    /// Whether it bounds a tool whose shape is not known well.
+    /// Whether it holds part of a tool whose shape is not known well.
     pub(super) loose: bool,
+    /// Whether it is inside of what the others cover.
+    pub(super) core: bool,
     /// It is the hull of so many curves of the outline, or of one of so many parts of one.
     pub(super) cut: [usize; 2],
-    /// Its part of the outline, from the tip to the top.
+    /// Its part of the outline, from the tip to the top; none of a core.
     pub(super) pieces: Vec<Piece>,
 }
 
@@ -59,7 +64,13 @@ impl Convex {
         self.exact
     }
 
-    /// Whether it may be much larger than the tool: the hull of control points.
+    /// Whether it only says what a tool [holds](crate::cover_and_cores), and is inside of what covers it.
+    #[must_use]
+    pub fn is_core(&self) -> bool {
+        self.core
+    }
+
+    /// Whether it may be much larger than the tool.
     #[must_use]
     pub fn is_loose(&self) -> bool {
         self.loose
@@ -119,7 +130,7 @@ impl Convex {
     /// The largest `⟨direction, (ρ, ζ)⟩` for a direction with a first part of at least 0, and where it is.
     pub(super) fn meridian_support(&self, direction: [f64; 2]) -> (f64, [f64; 2]) {
         let mut best = (f64::NEG_INFINITY, [0.0; 2]);
-        for corner in &self.corners {
+        for corner in self.corners_towards(direction) {
             let value = dot(direction, *corner);
             if value > best.0 {
                 best = (value, *corner);
@@ -139,6 +150,26 @@ impl Convex {
         best
     }
 
+    /// The corners of which one reaches farthest in a direction with a first part of at least 0.
+    fn corners_towards(&self, direction: [f64; 2]) -> &[[f64; 2]] {
+        if self.corners.len() <= FEW {
+            return &self.corners;
+        }
+        // From the lowest on the axis to the highest, they rise in that direction and fall again.
+        let (mut low, mut high) = (0, self.corners.len() - 1);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            let [a, b] = [self.corners[middle], self.corners[middle + 1]];
+            if dot(direction, [b[0] - a[0], b[1] - a[1]]) > 0.0 {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        // But for rounding.
+        &self.corners[low.saturating_sub(1)..self.corners.len().min(low + 2)]
+    }
+
     /// Whether a point at `(ρ, ζ)` belongs to the solid.
     ///
     /// A point outside of a convex set is beyond it in the direction from the nearest of its points: across an edge, or
@@ -153,6 +184,34 @@ impl Convex {
         let arcs = self.arcs.iter().map(|arc| from(arc.centre));
         let mut directions = edges.chain(corners).chain(arcs).filter(|direction| direction[0] >= 0.0);
         directions.all(|direction| dot(direction, point) <= self.meridian_support(direction).0)
+    }
+
+    /// The direction of a point outside from the nearest of the solid, in the half-plane; for one inside, there is none.
+    #[must_use]
+    pub fn away(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+        let from = |other: [f64; 2]| [point[0] - other[0], point[1] - other[1]];
+        let next = self.corners.iter().cycle().skip(1);
+        let of_side = |(a, b): (&[f64; 2], &[f64; 2])| {
+            let way = [b[0] - a[0], b[1] - a[1]];
+            let part = dot(from(*a), way) / dot(way, way).max(f64::MIN_POSITIVE);
+            let part = part.clamp(0.0, 1.0);
+            let off = from([a[0] + part * way[0], a[1] + part * way[1]]);
+            // The outside is on the right.
+            let is_out = cross(way, from(*a)) < 0.0;
+            (off, is_out)
+        };
+        let sides = self.corners.iter().zip(next).map(of_side);
+        let of_arc = |arc: &ConvexArc| {
+            let off = from(arc.centre);
+            let (length, [first, last]) = (dot(off, off).sqrt(), arc.normals);
+            let is_beside = cross(first, off) >= 0.0 && cross(off, last) >= 0.0;
+            (is_beside && length > arc.radius).then(|| off.map(|c| c * (1.0 - arc.radius / length)))
+        };
+        let arcs = self.arcs.iter().filter_map(of_arc);
+        let all = sides.filter(|(_, is_out)| *is_out).map(|(off, _)| off).chain(arcs);
+        let off = all.min_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)))?;
+        let length = dot(off, off).sqrt();
+        (length > 0.0).then(|| off.map(|c| c / length))
     }
 
     /// The largest distance of a point from the tip.

@@ -14,12 +14,12 @@ const SAME: f64 = 1e-9;
 
 /// The convex solids that cover a tool, with nothing farther than `tolerance` from it where its outline is concave.
 ///
-/// A tool without a profile is covered by the solid of revolution of its control points.
+/// A tool without a profile is covered by [hulls](sweepsim_motion::Bounds::hulls) of its surface.
 #[must_use]
 pub fn cover(tool: &Tool, tolerance: f64) -> Vec<Convex> {
     let curves = tool.meridians();
     if curves.is_empty() {
-        return vec![around_patches(tool)];
+        return hulls(tool);
     }
     // If it does, something may be between the outline and the axis that is none of the tool.
     let falls = curves.iter().any(falls);
@@ -86,11 +86,9 @@ impl Stretch {
     fn new(from: [f64; 2]) -> Self {
         let convex = Convex {
             corners: vec![from],
-            arcs: Vec::new(),
             exact: true,
-            loose: false,
             cut: [0, 1],
-            pieces: Vec::new(),
+            ..Convex::default()
         };
         Self { convex }
     }
@@ -243,29 +241,40 @@ fn halves(controls: &[Control]) -> (Vec<Control>, Vec<Control>) {
     (low, high)
 }
 
-/// The control points of patches, turned about the axis.
-fn around_patches(tool: &Tool) -> Convex {
-    let mut corners = Vec::new();
-    for patch in tool.patches() {
-        let weights = patch.weight().coefficients();
-        for (i, weight) in weights.iter().enumerate() {
-            let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weight);
-            corners.push([x.hypot(y), z]);
-        }
+/// A tool whose hulls are wider than its cores by more than this part is not known well.
+const WIDER: f64 = 0.01;
+
+/// The solids that hold a tool without a profile.
+fn hulls(tool: &Tool) -> Vec<Convex> {
+    let bounds = tool.bounds();
+    let widest = |all: &[Vec<[f64; 2]>]| all.iter().flatten().map(|p| p[0]).fold(0.0, f64::max);
+    let loose = widest(&bounds.cores) < (1.0 - WIDER) * widest(&bounds.hulls);
+    let hull = |corners: &Vec<[f64; 2]>| Convex {
+        corners: corners.clone(),
+        loose,
+        cut: [corners.len() - 1, 1],
+        pieces: corners.windows(2).map(|ends| Piece::Line([ends[0], ends[1]])).collect(),
+        ..Convex::default()
+    };
+    bounds.hulls.iter().map(hull).collect()
+}
+
+/// The solids that [cover] a tool that cuts, and convex ones that it holds, if those do not say all of that.
+#[must_use]
+pub fn cover_and_cores(tool: &Tool, tolerance: f64) -> Vec<Convex> {
+    [cover(tool, tolerance), cores(tool)].concat()
+}
+
+pub(crate) fn cores(tool: &Tool) -> Vec<Convex> {
+    let curves = tool.meridians();
+    if !curves.is_empty() && curves.iter().all(|curve| is_convex(curve) && !falls(curve)) {
+        return Vec::new();
     }
-    let (low, high) = corners
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), corner| {
-            (low.min(corner[1]), high.max(corner[1]))
-        });
-    let pieces = vec![Piece::Points(corners.clone())];
-    corners.extend([[0.0, low], [0.0, high]]);
-    Convex {
-        corners: extreme(corners),
-        arcs: Vec::new(),
-        exact: false,
-        loose: true,
-        cut: [1, 1],
-        pieces,
-    }
+    let core = |corners: &Vec<[f64; 2]>| Convex {
+        corners: corners.clone(),
+        exact: true,
+        core: true,
+        ..Convex::default()
+    };
+    tool.bounds().cores.iter().map(core).collect()
 }

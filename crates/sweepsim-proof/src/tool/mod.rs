@@ -8,5 +8,6 @@ mod level;
 pub(crate) use bridge::bridges;
 pub use convex::Convex;
 pub(crate) use convex::Piece;
-pub use cover::cover;
+pub(crate) use cover::cores;
+pub use cover::{cover, cover_and_cores};
 pub(crate) use level::Level;

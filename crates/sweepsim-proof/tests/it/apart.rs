@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Closest, Cutter, Limits, Target, closest, cover};
+use sweepsim_proof::{Closest, Cutter, Limits, Target, closest, cover_and_cores};
 use sweepsim_props::test_runner::{Config, TestRunner};
 use sweepsim_props::*;
 
@@ -19,7 +19,7 @@ fn found(soup: &TriangleSoup, path: &Path, limits: &Limits) -> Closest {
         Target::new(soup, LIFT).expect("closed"),
         Tool::flat(RADIUS, HEIGHT).expect("a tool"),
     );
-    let solids = cover(&tool, 1e-3);
+    let solids = cover_and_cores(&tool, 1e-3);
     let body = Cutter::new(&solids, path, None);
     let found = closest(&solid, &[body], limits, true, &()).expect("not cancelled");
     check_distance((soup, &solid), (&tool, &body), limits, &found);

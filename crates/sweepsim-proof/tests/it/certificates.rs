@@ -10,8 +10,8 @@ use sweepsim_dexel::{Stock, TriangleSoup};
 use sweepsim_motion::Pose;
 use sweepsim_motion::{Path, Tool};
 use sweepsim_proof::{
-    Closest, Cutter, Enclosed, Left, Limits, Target, cover, deepest, depth_claim, distance_claim, height_claim, margin,
-    motions, outline, regions,
+    Closest, Cutter, Enclosed, Left, Limits, Target, cover_and_cores, deepest, depth_claim, distance_claim,
+    height_claim, margin, motions, outline, regions,
 };
 
 /// A proof, what it is about, and what is claimed.
@@ -34,7 +34,7 @@ pub(crate) fn scene(
     let margin = margin(size, &[*cutter], limits);
     Scene {
         solids: vec![soup.triangles.clone()],
-        outlines: vec![outline(tool)],
+        outlines: vec![outline(tool, true)],
         paths: vec![motions(cutter, limits.deviation, &|_| false)],
         deviation: limits.deviation,
         stock: stock.and_then(|stock| regions(stock, 6.0 * margin)).unwrap_or_default(),
@@ -53,7 +53,7 @@ pub(crate) fn scene(
 
 pub(crate) fn certified(soup: &TriangleSoup, tool: &Tool, path: &Path, limits: &Limits) -> Certified {
     let target = Target::new(soup, LIFT).expect("closed");
-    let solids = cover(tool, 0.01 * limits.depth);
+    let solids = cover_and_cores(tool, 0.01 * limits.depth);
     let cutter = Cutter::new(&solids, path, None);
     let found = deepest(&target, &[cutter], limits, true, &()).expect("not cancelled");
     let scene = scene(soup, (tool, &cutter), limits, (Measure::Depth, limits.depth), None);
@@ -342,7 +342,7 @@ fn other_scenes_are_refused() {
     refused(&|scene| scene.paths[0][1].possible = true, false);
     // A larger tool is not lifted out as the smaller one is.
     let larger = |scene: &mut Scene| {
-        for curve in &mut scene.outlines[0] {
+        for curve in &mut scene.outlines[0].curves {
             if let Curve::Bezier(ends) = curve {
                 ends.iter_mut().for_each(|(end, _)| end[0] *= 1.001);
             }

@@ -5,7 +5,7 @@ use crate::process::{ROOM, Scene as Program, block, slot};
 use sweepsim_check::{Checked, Claim, Course, Curve, Measure, Question, Scene, Tree, packed};
 use sweepsim_dexel::Stock;
 use sweepsim_motion::{Path, Pose};
-use sweepsim_proof::{Cutter, Movers, Room, Touched, cover, material_claim, motions, outline, regions};
+use sweepsim_proof::{Cutter, Movers, Room, Touched, cover_and_cores, material_claim, motions, outline, regions};
 
 /// What is claimed, and what it is about.
 pub(crate) struct Certified {
@@ -39,14 +39,14 @@ impl Certified {
 /// A question about a program in a stock.
 fn asked(program: &Program, stock: &Stock, movers: Movers, room: &Room) -> Scene {
     let tools = [&program.cutter, &program.body];
-    let solids = tools.map(|tool| cover(tool, 1e-4)).concat();
+    let solids = tools.map(|tool| cover_and_cores(tool, 1e-4)).concat();
     let cutter = Cutter::new(&solids, &program.path, None);
     let (measure, own) = match movers {
         Movers::Bodies => (Measure::Material, 1),
         Movers::Rapids => (Measure::MaterialInRapids, 0),
     };
     Scene {
-        outlines: tools.map(outline).to_vec(),
+        outlines: tools.map(|tool| outline(tool, true)).to_vec(),
         paths: vec![motions(&cutter, room.deviation, &|number| {
             program.rapids.contains(&number)
         })],
@@ -67,7 +67,7 @@ fn asked(program: &Program, stock: &Stock, movers: Movers, room: &Room) -> Scene
 /// What is claimed of a program of which nothing was found to touch material.
 pub(crate) fn certified(program: &Program, stock: &Stock, movers: Movers, room: &Room, found: &Touched) -> Certified {
     let scene = asked(program, stock, movers, room);
-    let [cutter, body] = [&program.cutter, &program.body].map(|tool| cover(tool, 1e-4));
+    let [cutter, body] = [&program.cutter, &program.body].map(|tool| cover_and_cores(tool, 1e-4));
     let [cutter, body] = [&cutter, &body].map(|solids| [(0, Cutter::new(solids, &program.path, None))]);
     let own = match movers {
         Movers::Bodies => &body,
@@ -285,7 +285,7 @@ fn other_programs_tools_and_stocks_are_refused() {
     // What it does not say is not needed: another rapid in the air.
     assert!(own.within(|scene| moved(scene, first, [0.0, 0.0, 1.0])));
     let larger = |scene: &mut Scene| {
-        for curve in &mut scene.outlines[0] {
+        for curve in &mut scene.outlines[0].curves {
             if let Curve::Bezier(ends) = curve {
                 ends.iter_mut().for_each(|(end, _)| end[0] *= 1.001);
             }

@@ -4,7 +4,7 @@ use crate::scenes::sphere;
 use crate::standing::left_of;
 use crate::walls::{LIFT, LIMITS, TIPS, certified_with, extruded, slot};
 use sweepsim_motion::{Dovetail, Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
+use sweepsim_proof::{Cutter, Limits, Target, cover_and_cores, deepest};
 
 /// Whatever is expected, what is found is true, and the limit is kept or not. Enclosures need not be narrow where
 /// something is expected.
@@ -66,7 +66,7 @@ fn a_cutter_beside_many_triangles_is_soon_apart_from_them() {
         Pose::new([15.5 * angle.cos(), 15.5 * angle.sin(), 1.0], axis).expect("a pose")
     });
     let path = Path::new(poses.collect()).expect("a path");
-    let solids = cover(&Tool::ball(1.0, 3.0).expect("a tool"), 1e-4);
+    let solids = cover_and_cores(&Tool::ball(1.0, 3.0).expect("a tool"), 1e-4);
     let target = Target::new(&soup, LIFT).expect("closed");
     let found = deepest(&target, &[Cutter::new(&solids, &path, None)], &LIMITS, false, &()).expect("not cancelled");
     assert!(found.open.is_empty() && found.bound < LIMITS.depth, "{}", found.bound);

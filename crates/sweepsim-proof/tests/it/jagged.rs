@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use sweepsim_check::Measure;
 use sweepsim_dexel::{Dexels, DistanceTo, Grid, Stock, TriangleSoup};
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Limits, Target, cover, deepest, depth_claim, highest};
+use sweepsim_proof::{Cutter, Limits, Target, cover_and_cores, deepest, depth_claim, highest};
 
 const SIDE: usize = 5;
 
@@ -77,7 +77,7 @@ fn tried(case: u64) -> [bool; 2] {
     let tool = Tool::ball(radius, 20.0).expect("a tool");
     let limits = Limits::new(0.3, 0.03, 100_000);
     let target = Target::new(&soup, 2.5 * limits.depth).expect("closed");
-    let solids = cover(&tool, 0.01 * limits.depth);
+    let solids = cover_and_cores(&tool, 0.01 * limits.depth);
     let cutter = Cutter::new(&solids, &path, None);
     let found = deepest(&target, &[cutter], &limits, true, &()).expect("not cancelled");
     let is_proven = found.bound <= limits.depth;

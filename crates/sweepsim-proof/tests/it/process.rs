@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::Stock;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
-use sweepsim_proof::{Cutter, Movers, Room, Touched, Work, cover, touched};
+use sweepsim_proof::{Cutter, Movers, Room, Touched, Work, cover_and_cores, touched};
 use sweepsim_props::test_runner::{Config, RngSeed, TestRunner};
 use sweepsim_props::*;
 
@@ -55,7 +55,7 @@ impl Scene {
 
     pub fn touched_in(&self, stock: &Stock, movers: Movers, room: &Room) -> Touched {
         let is_rapid = |number: usize| self.rapids.contains(&number);
-        let [cutter, bodies] = [&self.cutter, &self.body].map(|tool| cover(tool, 1e-4));
+        let [cutter, bodies] = [&self.cutter, &self.body].map(|tool| cover_and_cores(tool, 1e-4));
         let work = [Work {
             cutter: Cutter::new(&cutter, &self.path, None),
             bodies: &bodies,

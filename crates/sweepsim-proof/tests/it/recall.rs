@@ -7,8 +7,8 @@ use std::sync::Mutex;
 use sweepsim_dexel::{Stock, TriangleSoup};
 use sweepsim_motion::{Path, Pose, Tool};
 use sweepsim_proof::{
-    Convex, Cutter, Limits, Movers, QuestionDigest, Recall, Room, Target, Work, closest_from, cover, deepest_from,
-    highest_from, touched_from,
+    Convex, Cutter, Limits, Movers, QuestionDigest, Recall, Room, Target, Work, closest_from, cover_and_cores,
+    deepest_from, highest_from, touched_from,
 };
 
 /// Keeps all answers, and counts those that were known and those that were not.
@@ -69,11 +69,11 @@ fn path(tips: &[[f64; 3]]) -> Path {
 }
 
 fn cutter() -> Vec<Convex> {
-    cover(&Tool::ball(3.0, 12.0).unwrap(), 1e-4)
+    cover_and_cores(&Tool::ball(3.0, 12.0).unwrap(), 1e-4)
 }
 
 fn shank() -> Vec<Convex> {
-    cover(&Tool::flat(4.0, 12.0).unwrap(), 1e-4)
+    cover_and_cores(&Tool::flat(4.0, 12.0).unwrap(), 1e-4)
 }
 
 const STOCK: Stock = Stock::Block {

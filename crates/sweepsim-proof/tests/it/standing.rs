@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::cell::Cell;
 use sweepsim_dexel::{DistanceTo, Stock, TriangleSoup};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
-use sweepsim_proof::{Cutter, Left, Limits, Target, cover, highest};
+use sweepsim_proof::{Cutter, Left, Limits, Target, cover_and_cores, highest};
 use sweepsim_props::test_runner::{Config, TestRunner};
 use sweepsim_props::*;
 
@@ -26,7 +26,7 @@ pub(crate) fn left_of((x, target): ([f64; 2], &TriangleSoup), tool: &Tool, tips:
         min: [x[0], -20.0, -10.0],
         max: [x[1], 20.0, 10.0],
     };
-    let solids = cover(tool, 1e-4);
+    let solids = cover_and_cores(tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
     let solid = Target::new(target, LIFT).expect("closed");
     let left = highest(&solid, &stock, &[cutter], limits, true, &());
@@ -118,7 +118,7 @@ fn check_raster(kinds: (u8, u8), size: f64, (step, height): (f64, f64)) -> Resul
     let path = Path::new(poses.collect()).expect("a path");
     let [low, high] = [[-9.0, -5.0, -7.5], [9.0, 5.0, 3.0]];
     let stock = Stock::Block { min: low, max: high };
-    let solids = cover(&tool, 1e-4);
+    let solids = cover_and_cores(&tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
     let limits = Limits::new(0.3, 0.03, 60_000);
     let found = highest(&solid, &stock, &[cutter], &limits, true, &());
@@ -238,7 +238,7 @@ fn a_round_pocket_that_is_cut_along_arcs_is_finished() {
     }
     let path = Path::with_moves(poses, moves).expect("a path");
     let tool = Tool::flat(6.0, 30.0).expect("a tool");
-    let solids = cover(&tool, 1e-4);
+    let solids = cover_and_cores(&tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
     let stock = Stock::Block {
         min: [-25.0, -25.0, -20.0],
@@ -286,7 +286,10 @@ fn what_is_undecided_has_a_place() {
         min: [-20.0, -12.0, -8.0],
         max: [20.0, 12.0, 1.0],
     };
-    let (solids, solid) = (cover(&tool, 1e-4), Target::new(&target, LIFT).expect("closed"));
+    let (solids, solid) = (
+        cover_and_cores(&tool, 1e-4),
+        Target::new(&target, LIFT).expect("closed"),
+    );
     let cutter = Cutter::new(&solids, &path, None);
     let (mut decided, mut open) = (0, 0);
     let shares = [0.5, 0.9, 0.99, 0.999, 1.0, 1.001, 1.01, 1.1, 1.2, 1.5, 2.0];
@@ -346,7 +349,7 @@ fn over_a_cone(sides: usize, limits: &Limits) -> (Left, bool) {
     let tool = Tool::ball(3.0, 20.0).expect("a tool");
     let poses = [-20.0, 20.0].map(|x| Pose::new([x, 0.0, 9.0], [0.0, 0.0, 1.0]).expect("a pose"));
     let path = Path::new(poses.to_vec()).expect("a path");
-    let solids = cover(&tool, 1e-4);
+    let solids = cover_and_cores(&tool, 1e-4);
     let cutter = Cutter::new(&solids, &path, None);
     let target = Target::new(&cone, LIFT).expect("closed");
     let found = highest(&target, &stock, &[cutter], limits, true, &());

@@ -3,7 +3,7 @@
 use crate::certificates::{Certified, certified};
 use sweepsim_dexel::TriangleSoup;
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_proof::{Cutter, Limits, Target, cover, deepest};
+use sweepsim_proof::{Cutter, Limits, Target, cover_and_cores, deepest};
 
 /// What goes too deep may have to be lifted so far, about.
 pub(crate) const LIFT: f64 = 0.05;
@@ -161,7 +161,7 @@ fn threads_do_not_matter() {
     let tip = |k: u32| [-35.0 + 70.0 * f64::from(k % 16) / 15.0, -8.0 + f64::from(k / 16), 2.0];
     let poses = (0..250).map(|k| Pose::new(tip(k), [0.0, 0.0, 1.0]).expect("a pose"));
     let path = Path::new(poses.collect()).expect("a path");
-    let solids = cover(&tool, 1e-4);
+    let solids = cover_and_cores(&tool, 1e-4);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

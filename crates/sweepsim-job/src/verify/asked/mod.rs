@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use sweepsim_check::{Measure, Question, Scene};
 use sweepsim_dexel::{Stock, TriangleSoup};
 use sweepsim_formats::{Job, JobPath};
-use sweepsim_proof::{Convex, Cutter, Limits, Movers, Room, cover, margin, motions, outline, regions};
+use sweepsim_proof::{Convex, Cutter, Limits, Movers, Room, cover, cover_and_cores, margin, motions, outline, regions};
 
 /// An enclosure is no wider than this part of its limit, where nothing goes deeper than that.
 pub(in crate::verify) const WIDTH: f64 = 0.1;
@@ -198,12 +198,8 @@ impl<'a> AskedAll<'a> {
     fn covers(&self, moving: Moving, tolerance: f64) -> BTreeMap<u32, Vec<Convex>> {
         let mut all: BTreeMap<u32, Vec<Convex>> = BTreeMap::new();
         if moving != Moving::Bodies {
-            all.extend(
-                self.job
-                    .tools
-                    .iter()
-                    .map(|(number, tool)| (*number, cover(tool, tolerance))),
-            );
+            let tools = self.job.tools.iter();
+            all.extend(tools.map(|(number, tool)| (*number, cover_and_cores(tool, tolerance))));
         }
         if moving != Moving::Cutters {
             for (number, bodies) in &self.job.bodies {
@@ -299,11 +295,12 @@ impl<'a> AskedAll<'a> {
         }
         let mut outlines: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, tool) in &job.tools {
-            let bodies = job.bodies.get(number).into_iter().flatten().map(|body| &body.solid);
+            let bodies = job.bodies.get(number).into_iter().flatten();
+            let bodies = bodies.map(|body| outline(&body.solid, false));
             let own = outlines.entry(*number).or_default();
-            for solid in std::iter::once(tool).chain(bodies) {
+            for outline in std::iter::once(outline(tool, true)).chain(bodies) {
                 own.push(scene.outlines.len());
-                scene.outlines.push(outline(solid));
+                scene.outlines.push(outline);
             }
         }
         for path in &job.paths {

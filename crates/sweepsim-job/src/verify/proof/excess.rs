@@ -75,13 +75,15 @@ pub(super) fn excess(
             findings.push(finding);
         }
         StatementState::Open => {
-            let loose = cutters.iter().filter(|(_, solids)| solids.iter().all(Convex::is_loose));
+            let loose = cutters.iter().filter(|(_, solids)| solids.iter().any(Convex::is_loose));
             let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
             if known > least {
                 statement.reason = Some(super::between_limits([least, most], known, "high"));
             } else if !loose.is_empty() {
                 let tools = loose.join(", ");
-                let text = format!("it is not known what tools of free-form patches have removed for certain: {tools}");
+                let text = format!(
+                    "what tools have removed is known of solids of revolution in them only, and these are not round: {tools}"
+                );
                 statement.reason = Some(text);
             }
             statement.open_count = left.open_count;

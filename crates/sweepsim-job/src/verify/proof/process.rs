@@ -144,9 +144,13 @@ fn loose(solids: &Solids) -> Option<String> {
     let loose = solids
         .cutters
         .iter()
-        .filter(|(_, solids)| solids.iter().all(Convex::is_loose));
+        .filter(|(_, solids)| solids.iter().any(Convex::is_loose));
     let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
     let tools = loose.join(", ");
-    let text = || format!("it is not known what tools of free-form patches have removed for certain: {tools}");
+    let text = || {
+        format!(
+            "what tools have removed is known of solids of revolution in them only, and these are not round: {tools}"
+        )
+    };
     (!loose.is_empty()).then(text)
 }

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use sweepsim::motion::Path;
 use sweepsim_formats::{JobPath, Report};
-use sweepsim_proof::{Convex, Cutter, Limits, Target, cover, deepest};
+use sweepsim_proof::{Convex, Cutter, Limits, Target, cover_and_cores, deepest};
 
 /// What is taken together: the tool and its registers.
 type Registers<'a> = (u32, &'a [(String, usize)]);
@@ -122,7 +122,12 @@ fn reading(session: Session, target: &Target, own: &[&JobPath], others: &[&JobPa
     let moves: usize = runs.iter().map(|(_, (_, run))| run.moves()).sum();
     let covers: BTreeMap<u32, Vec<Convex>> = own
         .iter()
-        .filter_map(|path| Some((path.tool, cover(job.tools.get(&path.tool)?, asked::CHORDS * limit))))
+        .filter_map(|path| {
+            Some((
+                path.tool,
+                cover_and_cores(job.tools.get(&path.tool)?, asked::CHORDS * limit),
+            ))
+        })
         .collect();
     let cutters: Vec<Cutter> = runs
         .iter()
