@@ -4,7 +4,7 @@ use crate::depth::Cell;
 use crate::height::Patch;
 use crate::scene::Curve;
 use crate::surface::Surface;
-use crate::tool::{Body, bodies, bridged};
+use crate::tool::{Body, bodies, bridged, cores};
 use crate::vector::{dot, unit};
 use std::f64::consts::FRAC_PI_2;
 
@@ -158,6 +158,26 @@ fn a_hull_is_not_cut_and_removes_nothing() {
     ];
     let all = bodies(&hollow, &[[3, 1]]).expect("a tool");
     assert!(all[0].level([0.0, 1.0]).is_none());
+}
+
+/// A core holds what is beside it, and nothing leads from it into another.
+#[test]
+fn a_core_is_convex_and_ends_on_the_axis() {
+    let good = vec![[0.0, 0.0], [3.0, 1.0], [3.0, 5.0], [1.0, 6.0], [0.0, 6.0]];
+    let all = bridged(cores(&[good.clone(), good.clone()]).expect("cores"));
+    assert_eq!(all.len(), 2);
+    let level = |rho, zeta| all[0].level([rho, zeta]).expect("a part of the tool");
+    assert!((level(2.0, 3.0) + 1.0).abs() < 1e-12 && (level(4.0, 3.0) - 1.0).abs() < 1e-12);
+    assert!(level(2.9, 0.9) > 0.0 && level(2.9, 5.3) > 0.0);
+    let with = |k: usize, corner: [f64; 2]| {
+        let mut bad = good.clone();
+        bad[k] = corner;
+        cores(&[bad]).is_err()
+    };
+    // Off the axis, hollow, falling.
+    assert!(with(0, [1.0, 0.0]) && with(4, [0.5, 6.0]));
+    assert!(with(2, [2.0, 3.0]) && with(1, [3.0, -0.5]) && with(3, [1.0, 4.5]));
+    assert!(cores(&[vec![]]).is_err() && cores(&[vec![[0.0, 1.0]]]).is_err());
 }
 
 /// What leads from one solid of a tool into the next is a part of the tool, and as wide as it is between them.

@@ -93,7 +93,7 @@ pub(crate) fn cores(all: &[Vec<P2>]) -> Result<Vec<Body>, String> {
         let line = |ends: &[P2]| Curve::Bezier(ends.iter().map(|end| (*end, 1.0)).collect());
         let lines: Vec<Curve> = corners.windows(2).map(line).collect();
         let body = bodies(&lines, &[[lines.len(), 1]]).ok()?.pop()?;
-        let is_whole = corners[0][0] == 0.0 && corners[corners.len() - 1][0] == 0.0;
+        let is_whole = corners.len() > 2 && corners[0][0] == 0.0 && corners.last()?[0] == 0.0;
         // Nothing leads from one into another.
         (is_whole && body.sides.is_some()).then(|| Body {
             pieces: Vec::new(),

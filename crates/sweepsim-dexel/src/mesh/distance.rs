@@ -334,6 +334,12 @@ impl DistanceTo {
         found
     }
 
+    /// Whether something holds for all triangles that come within `reach` of `p`, given their corners and unit normals.
+    pub fn all_within(&self, p: [f64; 3], reach: f64, holds: impl Fn(&[[f64; 3]; 3], [f64; 3]) -> bool) -> bool {
+        let fails = |face: &Face| !holds(&face.corners.map(|v| self.prepared.vertices[v as usize]), face.normal);
+        self.closest(p, (reach, fails), &mut SmallVec::new()).is_none()
+    }
+
     /// The triangle nearest to `p`: its distance, its corners, and for each edge from a corner to the next the normal
     /// of a plane through it that the triangle beyond shares, pointing inwards.
     #[must_use]

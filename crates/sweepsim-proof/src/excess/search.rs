@@ -42,8 +42,9 @@ pub struct Left {
 
 /// As many distances are tried.
 const ROUNDS: usize = 16;
-/// So many patches, for each part of the surface, are left to be looked at when it is asked whether the limit is kept.
-const RESERVE: usize = 2;
+/// As much of all patches is left to be looked at when it is asked whether the limit is kept; or half of what parts are
+/// worth.
+const RESERVE: usize = 4;
 /// What is far from the target need not be known better than this part of it.
 const SHARE: f64 = 1.0 / 64.0;
 /// However many parts there are, so many patches may be looked at for each of them.
@@ -223,8 +224,8 @@ impl Scene<'_> {
         };
         let mut distance = limits.width;
         // Whether the limit is kept comes before how far below it the bound is.
-        let reserve = RESERVE * self.patches.len();
         let budget = limits.pairs.max(PATCHES_OF_A_PART * self.patches.len());
+        let reserve = (budget / RESERVE).max(PATCHES_OF_A_PART / 2 * self.patches.len());
         for _ in 0..ROUNDS {
             let most = budget.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);
@@ -284,13 +285,12 @@ impl Scene<'_> {
         let mut still: BTreeMap<usize, Found> = BTreeMap::new();
         // Short looks everywhere, then what is left.
         for look in 0..MOST_LOOKS {
-            let each = match LOOKS.get(look) {
-                Some(each) => *each,
-                None => patches.saturating_sub(settled.patches) / open.len().max(1),
-            };
-            if open.is_empty() || each < LOOKS[look.min(LOOKS.len() - 1)] {
+            let share = patches.saturating_sub(settled.patches) / open.len().max(1);
+            let least = LOOKS[look.min(LOOKS.len() - 1)];
+            if open.is_empty() || look > 0 && share < least {
                 break;
             }
+            let each = if look < LOOKS.len() { least } else { share };
             // What is found at some patches need not be found again at the others.
             let (some, others): (Vec<usize>, Vec<usize>) = open.iter().partition(|number| **number % SAMPLED == 0);
             for numbers in [some, others] {

@@ -3,6 +3,9 @@
 use super::Convex;
 use super::convex::ConvexArc;
 
+/// Normals that differ by less are the same.
+const SAME: f64 = 1e-9;
+
 /// The planes and arcs between which a convex solid lies, in the half-plane `(ρ, ζ)`.
 #[derive(Clone, Debug)]
 pub(crate) struct Level {
@@ -21,7 +24,8 @@ impl Level {
             (length > 0.0).then(|| [x / length, y / length])
         });
         let ends = solid.arcs.iter().flat_map(|arc| arc.normals);
-        let planes = edges.chain(ends).filter(|normal| normal[0] >= 0.0);
+        // Only the axis has the other side; rounding may turn what is level.
+        let planes = edges.chain(ends).filter(|normal| normal[0] > -SAME);
         // What is not a side of the solid does no harm: it is farther out.
         let planes = planes.map(|normal| (normal, solid.meridian_support(normal).0));
         Self {

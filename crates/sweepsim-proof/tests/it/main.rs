@@ -9,6 +9,7 @@ mod jagged;
 mod process;
 mod recall;
 mod scenes;
+mod shapes;
 mod standing;
 mod trees;
 mod walls;

@@ -91,6 +91,12 @@ pub(super) fn corners(sides: &[Side], size: f64) -> Option<Vec<[f64; 2]>> {
         }
         all = kept;
     }
+    // Its lowest and its highest side are level, whatever rounding says.
+    let ends = [-sides.first()?.reach, sides.last()?.reach];
+    for corner in &mut all {
+        let near = ends.iter().find(|end| (corner[1] - **end).abs() <= 1e-13 * size);
+        corner[1] = near.copied().unwrap_or(corner[1]);
+    }
     let on_axis = |p: &[f64; 2]| p[0] <= 0.0;
     all.dedup();
     let lowest = (0..all.len())
