@@ -32,8 +32,8 @@ pub struct Scene {
 /// A tool, as solids of revolution about its axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Outline {
-    /// The outline of a tool of revolution in `(ρ, ζ)`, from the tip on the axis to the top on the axis, with the tool on
-    /// its left; of others, [hulls](Curve::Hull) beside which they are.
+    /// The outline of a tool of revolution in `(ρ, ζ)`, from the tip on the axis to the top on the axis, with the tool
+    /// on its left; of others, [hulls](Curve::Hull) that they are in.
     pub curves: Vec<Curve>,
     /// Convex solids that the tool holds, if the outline does not say it all: their corners, from the axis to the axis.
     pub cores: Vec<Vec<[f64; 2]>>,

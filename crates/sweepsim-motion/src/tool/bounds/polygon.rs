@@ -72,8 +72,8 @@ pub(super) fn hull(points: Vec<[f64; 2]>, tolerance: f64) -> Vec<Side> {
     }
 }
 
-/// The corners of what is between some sides and the axis, counter-clockwise, from the lowest on the axis to the highest;
-/// `None` if there is nothing. `size`: of the largest coordinate.
+/// The corners of what is between some sides and the axis, counter-clockwise, from the lowest on the axis to the
+/// highest; `None` if there is nothing. `size`: of the largest coordinate.
 pub(super) fn corners(sides: &[Side], size: f64) -> Option<Vec<[f64; 2]>> {
     let mut all = vec![[0.0, -size], [size, -size], [size, size], [0.0, size]];
     for side in sides {
