@@ -30,6 +30,7 @@ mod programs;
 mod round_trips;
 mod shop_programs;
 mod siemens;
+mod siemens_language;
 mod smoothing;
 mod tables;
 mod tilted_turns;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, UNCHECKED, hole_cycle, thread, workpiece};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
+use super::level::Call;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
@@ -151,15 +152,11 @@ impl Reader<'_> {
         span: &Range<usize>,
     ) -> Result<(), Located> {
         let here = |problem: NcProblem| (problem, span.clone());
-        let (name, given, modal) = match name {
-            "CALL" | "PCALL" => {
-                return Err(here(NcProblem::unsupported(
-                    "CALL is",
-                    "expected the name of the subprogram alone",
-                )));
-            }
-            _ => (name, arguments, self.modal_word(span)),
+        let (name, given) = match self.named_call(name, arguments).map_err(here)? {
+            Some(called) => (called, None),
+            None => (name.to_owned(), arguments),
         };
+        let (name, modal) = (name.as_str(), self.modal_word(span));
         let values = self.values(given)?;
         let known = self.knows(name);
         let unit = self.modes.unit();
@@ -194,7 +191,7 @@ impl Reader<'_> {
                 self.go_to_place(place, f64::NEG_INFINITY).map_err(here)?;
             }
             if modal {
-                self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
+                self.modes.modal_call = Some(Modal::Cycle(cycle));
                 return Ok(());
             }
             return self
@@ -214,16 +211,43 @@ impl Reader<'_> {
             .into_iter()
             .map(|value| value.unwrap_or(Value::Number(0.0)))
             .collect();
+        let times = if modal { 1.0 } else { words.plain("P").unwrap_or(1.0) };
+        let expected = "a whole number from 1 to 9999";
+        let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
+            .map_err(|problem| (problem, words.span("P")))?;
+        let call = Call {
+            name: name.to_owned(),
+            values,
+            variables: self.variables_among(given)?,
+            times: times as usize,
+            modally: modal,
+        };
         if modal {
-            self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
+            self.modes.modal_call = Some(Modal::Program(call));
         } else {
-            let times = words.plain("P").unwrap_or(1.0);
-            let expected = "a whole number from 1 to 9999";
-            let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
-                .map_err(|problem| (problem, words.span("P")))?;
-            self.pending = Some((name.to_owned(), values, times as usize));
+            self.pending = Some(call);
         }
         Ok(())
+    }
+
+    /// The program that `CALL` or `EXTCALL` names, wherever the control has it.
+    fn named_call(&self, name: &str, arguments: Option<&[Option<Expression>]>) -> Result<Option<String>, NcProblem> {
+        let text = match (name, arguments) {
+            ("CALL" | "EXTCALL", Some([Some(text)])) => text.value(&|name| self.lookup(name)),
+            ("CALL" | "EXTCALL" | "PCALL", _) => {
+                return Err(NcProblem::unsupported(
+                    format!("{name} is"),
+                    "expected the name of the subprogram alone",
+                ));
+            }
+            _ => return Ok(None),
+        };
+        let text = text.map_err(|(problem, _)| problem)?.text().to_ascii_uppercase();
+        let text = text.rsplit(['/', '\\', ':']).next().unwrap_or_default();
+        let text = text.trim_start_matches("_N_");
+        let ends = ["_SPF", "_MPF", ".SPF", ".MPF"];
+        let text = ends.iter().find_map(|end| text.strip_suffix(end)).unwrap_or(text);
+        Ok(Some(text.to_owned()))
     }
 
     /// Says that a cycle may be read wrongly.
@@ -256,7 +280,8 @@ const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF 
     DISPLON DISPLOF SAVE SBLON SBLOF WALIMON WALIMOF STARTFIFO STOPFIFO FIFOCTRL CFC CFTCP CFIN CDON CDOF CDOF2 \
     RTLION RTLIOF FENDNORM G1COMP OEMIPO1 SETMS TOWSTD CP EXECUTE PAROTOF TOROTOF";
 /// Keywords that change the path.
-const REFUSED: [&str; 23] = [
+const REFUSED: [&str; 26] = [
     "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",
     "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON", "KONTC", "KONTT",
+    "ROTS", "AROTS", "CROTS",
 ];

@@ -49,11 +49,21 @@ impl Reader<'_> {
             }
             FrameChange::Mirror => WorkFrame::scaled(values.map(|value| if value.is_some() { -1.0 } else { 1.0 })),
         };
+        let before = self.frames.programmed;
         self.frames.programmed = if operation.additive {
-            self.frames.programmed.then(&change)
+            if operation.kind == FrameChange::Turn && before.scale().is_none() {
+                let problem = "turning after a scale that is not the same for all axes is";
+                let expected = "the order on the control is not known; expected the scale after the turn";
+                return Err((NcProblem::unsupported(problem, expected), words.whole()));
+            }
+            before.then(&change)
         } else {
             change
         };
+        for k in 0..3 {
+            self.frames.kept[k] = self.frames.kept[k].or(self.track.xyz[k]);
+        }
+        self.frames.kept_turned |= operation.kind != FrameChange::Shift;
         self.apply_frames().map_err(|problem| (problem, words.whole()))
     }
 

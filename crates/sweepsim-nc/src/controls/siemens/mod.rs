@@ -17,6 +17,7 @@ mod cycles;
 mod frames;
 mod interpreter;
 mod language;
+mod level;
 mod moves;
 mod places;
 mod state;

@@ -9,7 +9,7 @@ use super::words::{Action, Words};
 use crate::text::error::{Located, NcProblem};
 
 /// The axes by the names of the machine.
-const MACHINE_AXES: [&str; 3] = ["X1", "Y1", "Z1"];
+pub(super) const MACHINE_AXES: [&str; 3] = ["X1", "Y1", "Z1"];
 
 /// That of the first word of an axis.
 fn axes_span(words: &Words) -> Range<usize> {

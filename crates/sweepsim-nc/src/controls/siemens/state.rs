@@ -2,11 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::language::expression::Value;
+use super::interpreter::Reader;
+use super::level::Call;
 use crate::drive::{Corners, Cycle, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
 use crate::model::event::Spindle;
+use crate::model::program::FeedMode;
 use crate::model::read_options::ReadOptions;
+use crate::text::error::NcProblem;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,8 +39,8 @@ pub(super) struct Modes {
     pub exact_stop: bool,
     /// `D0`: without the tool's length.
     pub(super) without_length: bool,
-    /// A cycle or subprogram at each position of the program at this depth.
-    pub modal_call: Option<(usize, Modal)>,
+    /// A cycle or subprogram at each position.
+    pub modal_call: Option<Modal>,
     /// The tool's edge (`D`).
     pub edge: u32,
     /// An allowance of compensated contours (`OFFN`), in mm.
@@ -58,14 +61,63 @@ pub(super) struct Modes {
     pub(super) speed: Option<f64>,
     pub(super) selected: Option<u32>,
     pub(super) tools: BTreeMap<String, u32>,
-    pub(super) uses_m6: bool,
+    /// Whether the program changes tools by M6: else T does.
+    pub(super) changes_by_m6: bool,
 }
 
 /// What `MCALL` calls.
 #[derive(Clone, Debug)]
 pub(super) enum Modal {
     Cycle(Cycle),
-    Program(String, Vec<Value>),
+    Program(Call),
+}
+
+/// What a subprogram with `SAVE` gives back: the G codes of all groups, and the programmable frame.
+pub(super) struct SavedModes {
+    motion: Motion,
+    plane: [usize; 3],
+    absolute: bool,
+    inch: bool,
+    exact_stop: bool,
+    corners: Corners,
+    round_ends: bool,
+    feed_mode: FeedMode,
+    offset: WorkOffset,
+    programmed: WorkFrame,
+}
+
+impl Reader<'_> {
+    pub(super) fn saved_modes(&self) -> SavedModes {
+        SavedModes {
+            motion: self.modes.motion,
+            plane: self.modes.plane,
+            absolute: self.modes.absolute,
+            inch: self.modes.inch,
+            exact_stop: self.modes.exact_stop,
+            corners: self.modes.corners,
+            round_ends: self.modes.round_ends,
+            feed_mode: self.track.feed_mode,
+            offset: self.frames.work.active,
+            programmed: self.frames.programmed,
+        }
+    }
+
+    pub(super) fn restore_modes(&mut self, saved: SavedModes) -> Result<(), NcProblem> {
+        self.modes = Modes {
+            motion: saved.motion,
+            plane: saved.plane,
+            absolute: saved.absolute,
+            inch: saved.inch,
+            exact_stop: saved.exact_stop,
+            corners: saved.corners,
+            round_ends: saved.round_ends,
+            ..std::mem::take(&mut self.modes)
+        };
+        self.track.feed_mode = saved.feed_mode;
+        self.frames.work.active = saved.offset;
+        self.frames.programmed = saved.programmed;
+        self.apply_frames()
+    }
 }
 
 impl Modes {
@@ -115,6 +167,9 @@ pub(super) struct Frames {
     pub swivelled: bool,
     /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
     pub programmed: WorkFrame,
+    /// What the program has given before the frame changed, until it gives the axis again; and whether it did not only shift.
+    pub kept: [Option<f64>; 3],
+    pub kept_turned: bool,
 }
 
 impl Frames {
@@ -124,6 +179,8 @@ impl Frames {
             swivel: WorkFrame::default(),
             swivelled: false,
             programmed: WorkFrame::default(),
+            kept: [None; 3],
+            kept_turned: false,
         }
     }
 }

@@ -9,6 +9,7 @@ use super::state::{Operation, PoleFrom};
 use crate::drive::CornerShape;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Units};
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// How a value is meant.
@@ -83,6 +84,20 @@ pub(super) struct Action {
     /// The corner at the end of the move, with its word, and its feed.
     pub corner: Option<(&'static str, CornerShape)>,
     pub corner_feed: Option<f64>,
+    /// Stops after the move: M0 and M1.
+    pub stops: Vec<(EventKind, Range<usize>)>,
+}
+
+/// Whether a name that gets a value may be that of an axis: a letter with a digit, as C1.
+fn is_axis(name: &str) -> bool {
+    matches!(name.as_bytes(), [letter, digit] if letter.is_ascii_uppercase() && *letter != b'R' && digit.is_ascii_digit())
+}
+
+pub(super) fn unknown_axis(name: &str) -> NcProblem {
+    NcProblem::unsupported(
+        format!("{name}= is"),
+        "it may be an axis; expected X, Y, Z, A, B or C, or DEF before it",
+    )
 }
 
 impl Reader<'_> {
@@ -118,6 +133,9 @@ impl Reader<'_> {
                     if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC") {
                         let problem = NcProblem::unsupported(format!("{name} is"), "expected axes by their letters");
                         return Err((problem, span.clone()));
+                    }
+                    if indices.is_empty() && is_axis(name) && !self.is_variable(name) {
+                        return Err((unknown_axis(name), span.clone()));
                     }
                     self.assign(key, value).map_err(|problem| (problem, span.clone()))?;
                 }
@@ -158,6 +176,10 @@ impl Reader<'_> {
             self.select(number).map_err(|problem| (problem, span))?;
         }
         let ends = self.settings(&words, &mut action)?;
+        let modal_feed = self.track.feed;
+        if let Some(feed) = words.plain("FB") {
+            self.track.feed = Some(self.feed(feed));
+        }
         if let Some((operation, _)) = action.operation {
             self.operate(operation, &words)?;
         } else if action.dwell {
@@ -169,6 +191,10 @@ impl Reader<'_> {
             self.event(EventKind::Dwell { seconds }, words.whole())?;
         } else if !action.other {
             self.moves(&words, &action)?;
+        }
+        self.track.feed = modal_feed;
+        for (kind, span) in action.stops {
+            self.event(kind, span)?;
         }
         if ends {
             self.back();
@@ -220,11 +246,28 @@ impl Reader<'_> {
 
     fn select(&mut self, number: u32) -> Result<(), NcProblem> {
         self.modes.selected = Some(number);
-        // Programs without a tool change name their tool by T alone.
-        if self.track.tool.is_none() && number > 0 && !self.modes.uses_m6 {
-            self.track.change_tool(Some(number))?;
+        // Programs without M6 change their tools by T alone; so does the first T of others, which may lie in the spindle.
+        let first = self.track.tool.is_none();
+        if number == 0 || !first && self.modes.changes_by_m6 {
+            return Ok(());
         }
+        if !first && self.track.tool != Some(number) {
+            let taken = "at once: the program has no M6";
+            let what = "when T changes the tool";
+            self.track.assume(Assumption::new(what, taken, "M6 where it changes"));
+        }
+        self.track.change_tool(Some(number))?;
         Ok(())
+    }
+
+    /// A feed in the unit of the program.
+    fn feed(&self, feed: f64) -> f64 {
+        match self.track.feed_mode {
+            FeedMode::InverseTime => feed,
+            FeedMode::PerMinute | FeedMode::PerRevolution => {
+                feed * (self.modes.unit() / self.track.program.units.in_mm())
+            }
+        }
     }
 
     /// F, S, T, D and M words. Whether the program ends.
@@ -235,12 +278,7 @@ impl Reader<'_> {
         if !action.dwell
             && let Some(feed) = words.plain("F")
         {
-            self.track.feed = Some(match self.track.feed_mode {
-                FeedMode::InverseTime => feed,
-                FeedMode::PerMinute | FeedMode::PerRevolution => {
-                    feed * (self.modes.unit() / self.track.program.units.in_mm())
-                }
-            });
+            self.track.feed = Some(self.feed(feed));
         }
         if let Some(offset) = words.plain("D") {
             self.modes.without_length = offset == 0.0;
@@ -260,15 +298,14 @@ impl Reader<'_> {
         for word in words.0.iter().filter(|word| word.name == "M") {
             let rpm = self.modes.speed;
             match word.value {
-                0.0 => self.event(EventKind::Stop, word.span.clone())?,
-                1.0 => self.event(EventKind::OptionalStop, word.span.clone())?,
+                0.0 => action.stops.push((EventKind::Stop, word.span.clone())),
+                1.0 => action.stops.push((EventKind::OptionalStop, word.span.clone())),
                 2.0 | 17.0 | 30.0 => ends = true,
                 3.0 => spindle = Some(Spindle::Clockwise { rpm }),
                 4.0 => spindle = Some(Spindle::CounterClockwise { rpm }),
                 5.0 => spindle = Some(Spindle::Stopped),
                 19.0 => {}
                 6.0 => {
-                    self.modes.uses_m6 = true;
                     action.tool_change = true;
                     let tool = self.modes.selected.filter(|tool| *tool > 0);
                     self.track

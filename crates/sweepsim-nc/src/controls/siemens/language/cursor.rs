@@ -121,6 +121,31 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// A whole number in quotes, to a base by its letter: `'HFF'`, `'B101'`, `'D9'`.
+    pub fn constant(&mut self) -> Result<f64, Located> {
+        let start = self.at;
+        self.expect('\'')?;
+        let rest = self.rest();
+        let inside = rest.find('\'').map_or("", |end| &rest[..end]);
+        let base = match inside.get(..1) {
+            Some("H" | "h") => 16,
+            Some("B" | "b") => 2,
+            _ => 10,
+        };
+        let digits = inside.trim_start_matches(['H', 'h', 'B', 'b', 'D', 'd']);
+        let digits = if base == 16 {
+            inside.get(1..).unwrap_or("")
+        } else {
+            digits
+        };
+        self.at += inside.len() + 1;
+        let value = i64::from_str_radix(digits, base).map(|value| value as f64);
+        value.map_err(|_| {
+            let problem = NcProblem::syntax("expected a number in quotes, such as 'HFF' or 'B101'");
+            (problem, start..self.at.min(self.text.len()))
+        })
+    }
+
     /// A text in quotes.
     pub fn quoted(&mut self) -> Result<String, Located> {
         self.expect('"')?;
