@@ -17,6 +17,7 @@ mod holes;
 mod jerk;
 mod kinematics;
 mod klartext_cycles;
+mod klartext_language;
 mod level_arcs;
 mod limits;
 mod machines;

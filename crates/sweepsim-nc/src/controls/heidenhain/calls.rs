@@ -2,11 +2,44 @@
 
 use std::rc::Rc;
 
-use super::interpreter::{Level, LevelKind, Reader};
+use super::interpreter::Reader;
 use super::line::Line;
 use super::routine::Routine;
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::{Located, NcProblem};
+
+/// A program, subprogram or repeated section on its way.
+pub(super) struct Level {
+    pub(super) routine: usize,
+    pub(super) next: usize,
+    pub(super) kind: LevelKind,
+    /// The parameters of its caller alone, which come back at its end.
+    pub(super) locals: Option<Vec<(String, f64)>>,
+}
+
+impl Level {
+    pub(super) fn new(routine: usize, next: usize, kind: LevelKind) -> Self {
+        let locals = None;
+        Self {
+            routine,
+            next,
+            kind,
+            locals,
+        }
+    }
+}
+
+pub(super) enum LevelKind {
+    Program,
+    /// Until LBL 0.
+    Subprogram,
+    /// From `from` to before `end`, this many more times.
+    Section {
+        from: usize,
+        end: usize,
+        times: usize,
+    },
+}
 
 impl Reader<'_> {
     pub(super) fn push(&mut self, level: Level, line: &Line) -> Result<(), Located> {
@@ -51,14 +84,7 @@ impl Reader<'_> {
                 }
             }
         };
-        self.push(
-            Level {
-                routine,
-                next: from,
-                kind,
-            },
-            line,
-        )
+        self.push(Level::new(routine, from, kind), line)
     }
 
     pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
@@ -82,12 +108,12 @@ impl Reader<'_> {
                 self.routines.len() - 1
             }
         };
-        let level = Level {
-            routine,
-            next: 0,
-            kind: LevelKind::Program,
-        };
-        self.push(level, line)
+        self.push(Level::new(routine, 0, LevelKind::Program), line)?;
+        let locals = self.parameters.take_locals();
+        if let Some(level) = self.stack.last_mut() {
+            level.locals = Some(locals);
+        }
+        Ok(())
     }
 
     pub(super) fn jump(&mut self, label: &str, routine: usize) -> Result<(), NcProblem> {

@@ -12,6 +12,7 @@
 mod calls;
 mod contours;
 mod cycles;
+mod formula;
 mod frames;
 mod interpreter;
 mod line;
@@ -21,6 +22,7 @@ mod routine;
 mod settings;
 mod state;
 mod values;
+mod words;
 
 pub use super::run::Library;
 pub(crate) use interpreter::read as read_kept;

@@ -80,7 +80,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
         _ => defined.depth(201)?,
     };
     hole.bottom = surface + depth;
-    hole.feed = defined.find(206)?;
+    hole.feed = defined.feed(206)?;
     hole.out = WayOut::RapidToStart;
     let pecks = |infeed: f64, [decrease, least]: [f64; 2]| {
         HoleWork::Pecks(Pecks {
@@ -99,7 +99,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
             if let Some(infeed) = infeed {
                 hole.work = pecks(infeed, [defined.span(212)?.max(0.0), defined.span(205)?]);
             }
-            if let (203, Some(out)) = (number, defined.find(208)?.filter(|feed| *feed > 0.0)) {
+            if let (203, Some(out)) = (number, defined.feed(208)?.filter(|feed| *feed > 0.0)) {
                 hole.out = WayOut::FeedToStart(Some(out));
             }
         }
@@ -116,14 +116,14 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
                 }
                 all.push(before);
             }
-            hole.feed = hole.feed.or(defined.find(207)?);
+            hole.feed = hole.feed.or(defined.feed(207)?);
             hole.work = helix(defined, tool, &hole)?;
             all.push(hole);
             return Ok(all);
         }
         // Boring, reaming and tapping.
         _ => {
-            let out = defined.find(208)?.filter(|feed| *feed > 0.0);
+            let out = defined.feed(208)?.filter(|feed| *feed > 0.0);
             hole.out = WayOut::FeedToStart(out);
             if number == 202 {
                 hole.aside = aside.unwrap_or_default().map(|c| c * FROM_THE_WALL);
@@ -152,11 +152,11 @@ fn back_boring(
         return Err(defined.fail(NcProblem::value("Q249 and Q250 of cycle 204", found, "positive")));
     }
     hole.bottom = surface + (-thickness - clearance - edge);
-    hole.feed = defined.find(253)?;
+    hole.feed = defined.feed(253)?;
     hole.aside = aside.map(|c| c * off);
     hole.work = HoleWork::Back {
         up: surface + (-thickness + depth - edge),
-        feed: defined.find(254)?,
+        feed: defined.feed(254)?,
         rapid: false,
     };
     Ok(())

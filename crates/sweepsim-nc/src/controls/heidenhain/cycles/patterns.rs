@@ -153,8 +153,8 @@ impl Reader<'_> {
                 Some("MAX") => return Ok(true),
                 Some("") if line.word(index + 1) == "MAX" => return Ok(true),
                 Some(value) if !matches!(value, "" | "AUTO") => {
-                    let feed = self.parameters.value(value);
-                    self.track.feed = Some(feed.map_err(|problem| (problem, token.span.clone()))?);
+                    let feed = self.feed_word(value);
+                    feed.map_err(|problem| (problem, token.span.clone()))?;
                 }
                 _ => {}
             }

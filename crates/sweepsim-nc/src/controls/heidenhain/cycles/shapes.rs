@@ -58,8 +58,8 @@ fn levels(defined: &Defined, tool: f64) -> Result<Pocket, Located> {
         left,
         rim_alone: kind == 2.0,
         step: tool * defined.find(370)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0),
-        feed: defined.find(207)?,
-        plunge: defined.find(206)?,
+        feed: defined.feed(207)?,
+        plunge: defined.feed(206)?,
         ..Pocket::new([end, start, surface, surface], tool)
     })
 }
