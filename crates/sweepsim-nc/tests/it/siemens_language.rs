@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sweepsim_nc::{EventKind, NcError, Program, ReadOptions, siemens};
+use sweepsim_nc::{EventKind, NcError, Program, ReadOptions, Spindle, siemens};
 
 fn attempt(text: &str) -> Result<Program, NcError> {
     let called = |name: &str| (name == "HOLE").then(|| (PathBuf::from("HOLE.SPF"), "G91 Z-1\nZ1\nG90\nM17".to_owned()));
@@ -219,4 +219,92 @@ fn incremental_moves_after_another_frame() {
     ends_at("X10 Y0 Z0\nROT RPL=90\nG91 X5", [10.0, 5.0, 0.0]);
     assert!(error("X0 Y0 Z0\nSCALE X2\nAROT Z45\nX1").contains("scale that is not the same"));
     ends_at("X0 Y0 Z0\nSCALE X2 Y2 Z2\nAROT Z90\nX1", [0.0, 2.0, 0.0]);
+}
+
+#[test]
+fn kinds_of_newer_cycles_that_are_not_known() {
+    let start = "T1 D1\n$TC_DP6[1,1]=2\nG0 X0 Y0 Z20 F100\n";
+    let deepest = |text: &str| {
+        let program = read(&format!("{start}{text}"));
+        let lowest = program
+            .poses
+            .iter()
+            .map(|pose| pose.pose.tip()[2])
+            .fold(f64::INFINITY, f64::min);
+        let missing = program
+            .assumptions
+            .iter()
+            .any(|assumption| assumption.what.contains("the moves of CYCLE"));
+        (
+            lowest,
+            missing
+                || program
+                    .assumptions
+                    .iter()
+                    .any(|a| a.what.contains("the moves of POCKET")),
+        )
+    };
+    // The depth is a diameter, or that of the shank.
+    assert_eq!(deepest("CYCLE81(10,0,2,6,,0,10,1,12)"), (20.0, true));
+    assert_eq!(deepest("CYCLE82(10,0,2,-6,,0,10,1,12)"), (20.0, true));
+    assert_eq!(deepest("CYCLE82(10,0,2,-6,,0,0,1,12)"), (-6.0, false));
+    // Relative, by itself or by AMODE.
+    assert_eq!(deepest("CYCLE82(10,3,2,,6,0,0,1,11)"), (-3.0, false));
+    assert_eq!(deepest("CYCLE82(10,3,2,6,,0,0,1,11)"), (-3.0, false));
+    let pocket = |vari: u32, gmode: u32, amode: u32| {
+        deepest(&format!(
+            "POCKET3(10,3,2,6,30,20,5,0,0,0,3,0,0,100,100,0,{vari},2,0,0,0,0,0,0,0,0,{gmode},0,{amode})"
+        ))
+    };
+    assert_eq!(pocket(1, 0, 1), (-3.0, false));
+    assert_eq!(pocket(5, 0, 1), (20.0, true));
+    assert_eq!(pocket(1, 2000, 1), (20.0, true));
+}
+
+#[test]
+fn dwells_feeds_and_stops_of_cycles() {
+    let events = |text: &str| -> Vec<EventKind> {
+        let text = format!("G0 X0 Y0 Z20 F100 S120 M3\n{text}");
+        read(&text)
+            .events
+            .iter()
+            .skip(1)
+            .map(|event| event.kind.clone())
+            .collect()
+    };
+    // Turns of the spindle are negative.
+    assert_eq!(events("CYCLE82(10,0,2,-6,,-3)"), [EventKind::Dwell { seconds: 1.5 }]);
+    assert_eq!(events("CYCLE82(10,0,2,-6,,3)"), [EventKind::Dwell { seconds: 3.0 }]);
+    assert!(events("CYCLE87(10,0,2,-6,,3)").contains(&EventKind::Stop));
+    let feed = |text: &str| {
+        read(&format!("G0 X0 Y0 Z20 F100 S120 M3\n{text}"))
+            .poses
+            .iter()
+            .find_map(|pose| pose.feed)
+    };
+    assert_eq!(feed("CYCLE84(10,0,2,-6,,0,5,,1.5,0,200)"), Some(300.0));
+    assert_eq!(feed("CYCLE84(10,0,2,-6,,0,5,,1.5,0)"), Some(180.0));
+    assert_eq!(feed("G95 F0.2\nCYCLE84(10,0,2,-6,,0,5,,1.5,0)"), Some(1.5));
+}
+
+#[test]
+fn numbered_spindles_and_feeds_in_inches() {
+    let spindle = |text: &str| {
+        read(&format!("{text}\nX0 Y0 Z0"))
+            .events
+            .first()
+            .map(|event| event.kind.clone())
+    };
+    let turns = Some(EventKind::Spindle(Spindle::Clockwise { rpm: Some(900.0) }));
+    assert_eq!(spindle("S1=900 M1=3"), turns);
+    assert_eq!(spindle("SETMS(2)\nS2=900 M2=3"), turns);
+    assert_eq!(spindle("S2=900 M2=3"), None);
+    let assumes = |text: &str| {
+        read(text)
+            .assumptions
+            .iter()
+            .any(|a| a.what.contains("feeds after G70"))
+    };
+    assert!(assumes("G70 X0 Y0 Z0\nG1 X1 F10"));
+    assert!(!assumes("G700 X0 Y0 Z0\nG1 X1 F10") && !assumes("X0 Y0 Z0\nG1 X1 F10"));
 }

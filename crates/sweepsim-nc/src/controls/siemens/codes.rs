@@ -42,7 +42,7 @@ impl Reader<'_> {
             54..=57 => return self.select_offset(value as u32 - 53),
             500 => return self.select_offset(0),
             505..=599 => return self.select_offset(value as u32 - 500),
-            70 | 700 => self.modes.inch = true,
+            code @ (70 | 700) => (self.modes.inch, self.modes.inch_feeds) = (true, code == 700),
             71 | 710 => self.modes.inch = false,
             code @ (74 | 75) => action.home = Some(code == 75),
             90 => self.modes.absolute = true,
@@ -125,7 +125,14 @@ impl Reader<'_> {
                         .note("a WORKPIECE other than a BOX with absolute sides (112) is left out");
                 }
             }
-            "CYCLE832" | "SETMS" | "STOPRE" => {}
+            "SETMS" => {
+                let number = self.values(arguments)?.into_iter().next().flatten();
+                self.modes.master = match number {
+                    Some(Value::Number(number)) => number as u32,
+                    _ => 1,
+                };
+            }
+            "CYCLE832" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
                 let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
@@ -164,9 +171,13 @@ impl Reader<'_> {
             name,
             values: &values,
             unit,
+            speed: self.modes.speed,
         };
         if !known && UNCHECKED.contains(&name) {
             self.unchecked(name).map_err(here)?;
+        }
+        if !known && name != "CYCLE62" && CONTOURS.contains(&name) && cycle.is_unknown_kind() {
+            return self.track.leave_out_cycle(name).map_err(here);
         }
         if !known && CONTOURS.contains(&name) {
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
@@ -179,7 +190,12 @@ impl Reader<'_> {
             }
             let arguments = cycle;
             let cycle = match name {
-                _ if HOLES.contains(&name) => Cycle::Holes(vec![hole_cycle(&arguments).map_err(here)?]),
+                _ if arguments.is_unknown_kind() => Cycle::Unknown(name.to_owned()),
+                _ if HOLES.contains(&name) => {
+                    let mut hole = hole_cycle(&arguments).map_err(here)?;
+                    hole.feed = hole.feed.or(self.tapping_feed(&arguments));
+                    Cycle::Holes(vec![hole])
+                }
                 "CYCLE70" | "CYCLE78" => {
                     let tool = self.cutter_radius(UNKNOWN_TOOL).map_err(here)?;
                     Cycle::Holes(thread(&arguments, tool).map_err(here)?)
@@ -230,6 +246,22 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// The feed of `CYCLE84`, by its pitch in mm and its speed.
+    fn tapping_feed(&self, arguments: &Arguments) -> Option<f64> {
+        let metric = arguments.get(13).is_none_or(|unit| unit <= 1.0);
+        let pitch = arguments.get(8).filter(|pitch| *pitch != 0.0 && metric)?.abs();
+        let speed = arguments.get(10).filter(|speed| *speed > 0.0).or(self.modes.speed);
+        if arguments.name != "CYCLE84" {
+            return None;
+        }
+        let pitch = pitch / self.track.program.units.in_mm();
+        match self.track.feed_mode {
+            FeedMode::PerRevolution => Some(pitch),
+            FeedMode::PerMinute => Some(pitch * speed?),
+            FeedMode::InverseTime => None,
+        }
+    }
+
     /// The program that `CALL` or `EXTCALL` names, wherever the control has it.
     fn named_call(&self, name: &str, arguments: Option<&[Option<Expression>]>) -> Result<Option<String>, NcProblem> {
         let text = match (name, arguments) {
@@ -278,7 +310,7 @@ impl Reader<'_> {
 const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF SOFT BRISK DRIVE FFWON FFWOF DIAMOF DIAMON STOPRE \
     ORIWKS ORIMKS ORIAXES ORIVECT ORIPLANE ORIROTA ORIC ORID ORISON ORISOF OSC OSD OSOF OSS OSSE UPATH SPATH \
     DISPLON DISPLOF SAVE SBLON SBLOF WALIMON WALIMOF STARTFIFO STOPFIFO FIFOCTRL CFC CFTCP CFIN CDON CDOF CDOF2 \
-    RTLION RTLIOF FENDNORM G1COMP OEMIPO1 SETMS TOWSTD CP EXECUTE PAROTOF TOROTOF";
+    RTLION RTLIOF FENDNORM G1COMP OEMIPO1 TOWSTD CP EXECUTE PAROTOF TOROTOF";
 /// Keywords that change the path.
 const REFUSED: [&str; 26] = [
     "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",

@@ -5,6 +5,7 @@ use super::state::{FrameChange, Operation};
 use super::words::Words;
 use crate::drive::{Coordinates, WorkOffset};
 use crate::machines::WorkFrame;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -104,6 +105,12 @@ impl Reader<'_> {
             [get(10), get(11), get(12)].map(|value| value * unit),
         ));
         let additive = get(2) % 10.0 == 1.0;
+        if additive && self.frames.programmed != WorkFrame::default() {
+            let taken = "it ends: the plane is upon the last swivelled plane alone";
+            let what = "the programmable frame before an additive CYCLE800";
+            self.track
+                .assume(Assumption::new(what, taken, "TRANS without words before it"));
+        }
         self.frames.swivel = if additive {
             self.frames.swivel.then(&frame)
         } else {

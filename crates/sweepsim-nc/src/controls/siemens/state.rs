@@ -34,6 +34,10 @@ pub(super) struct Modes {
     pub plane: [usize; 3],
     pub absolute: bool,
     pub(super) inch: bool,
+    /// G700: feeds too.
+    pub(super) inch_feeds: bool,
+    /// The number of the master spindle.
+    pub(super) master: u32,
     pub tip_control: bool,
     /// `G60`: the axes rest after each block.
     pub exact_stop: bool,
@@ -126,6 +130,8 @@ impl Modes {
             plane: [0, 1, 2],
             absolute: true,
             inch: options.inch,
+            inch_feeds: options.inch,
+            master: 1,
             tip_control: options.machine.tip_control,
             edge: 1,
             ..Self::default()

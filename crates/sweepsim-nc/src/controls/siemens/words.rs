@@ -88,6 +88,12 @@ pub(super) struct Action {
     pub stops: Vec<(EventKind, Range<usize>)>,
 }
 
+/// The number of the spindle of `S1=` or `M1=`.
+fn spindle(name: &str) -> Option<u32> {
+    let digits = name.strip_prefix(['S', 'M'])?;
+    (digits.len() == 1).then(|| digits.parse().ok()).flatten()
+}
+
 /// Whether a name that gets a value may be that of an axis: a letter with a digit, as C1.
 fn is_axis(name: &str) -> bool {
     matches!(name.as_bytes(), [letter, digit] if letter.is_ascii_uppercase() && *letter != b'R' && digit.is_ascii_digit())
@@ -139,7 +145,7 @@ impl Reader<'_> {
                     }
                     self.assign(key, value).map_err(|problem| (problem, span.clone()))?;
                 }
-                Item::Word { name, value, span } => match (name.as_str(), self.value_of(value)?) {
+                Item::Word { name, value, span } => match (self.of_master(name), self.value_of(value)?) {
                     ("T", (Value::Text(text), _)) => tool_name = Some((text, span.clone())),
                     (_, (Value::Text(text), _)) => {
                         let problem = NcProblem::value(format!("the word {name}"), format!("{text:?}"), "a number");
@@ -208,6 +214,19 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// `S1=` and `M1=` of the master spindle are S and M; those of others are ignored.
+    fn of_master<'a>(&mut self, name: &'a str) -> &'a str {
+        match spindle(name) {
+            Some(number) if number == self.modes.master => &name[..1],
+            Some(_) => {
+                self.track
+                    .note(format!("{name}=, of another spindle than the master, is ignored"));
+                name
+            }
+            None => name,
+        }
     }
 
     /// The value of a word, and how it is meant.
@@ -279,6 +298,11 @@ impl Reader<'_> {
             && let Some(feed) = words.plain("F")
         {
             self.track.feed = Some(self.feed(feed));
+            if self.modes.inch && !self.modes.inch_feeds && self.track.feed_mode != FeedMode::InverseTime {
+                let taken = "inches, as on a control whose own unit that is";
+                let what = "the unit of feeds after G70";
+                self.track.assume(Assumption::new(what, taken, "G700").harmless());
+            }
         }
         if let Some(offset) = words.plain("D") {
             self.modes.without_length = offset == 0.0;

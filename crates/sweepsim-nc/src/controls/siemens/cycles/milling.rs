@@ -223,6 +223,10 @@ impl Reader<'_> {
         let Some(shape) = milled(arguments, 0.0) else {
             return Ok(false);
         };
+        if arguments.is_unknown_kind() {
+            self.track.leave_out_cycle(name)?;
+            return Ok(true);
+        }
         let unknown = shape?.pocket.widest_unknown_tool();
         let tool = self.cutter_radius(unknown)?;
         let Some(milled) = milled(arguments, tool) else {
