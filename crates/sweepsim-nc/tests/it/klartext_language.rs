@@ -241,3 +241,24 @@ fn polar_arcs_that_are_tangential() {
         sweepsim_motion::TipCourse::Arc(_)
     ));
 }
+
+#[test]
+fn depths_feeds_and_finishing_of_cycles() {
+    let drill = "CYCL DEF 200 DRILLING Q200=2 Q201=-5 Q206=100 Q202=5 Q203=+0 Q204=10";
+    assert!(assumes(&format!("{drill} Q395=1\nCYCL CALL"), "the point of the drill"));
+    assert!(!assumes(
+        &format!("{drill} Q395=0\nCYCL CALL"),
+        "the point of the drill"
+    ));
+    // Tapping feeds by its pitch.
+    let tapped = read("CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-5 Q239=+1.5 Q203=+0 Q204=10\nCYCL CALL");
+    assert_eq!(tapped.poses.iter().find_map(|pose| pose.feed), Some(1500.0));
+    // Finishing takes the floor if something was left there.
+    let bottom = |left: f64| {
+        let text = format!(
+            "TOOL DEF 1 L+0 R+2\nCYCL DEF 251 POCKET Q215=2 Q218=30 Q219=20 Q220=5 Q368=0.2 Q224=0 Q367=0 Q207=500 Q351=+1 Q201=-6 Q202=3 Q369={left} Q206=150 Q338=0 Q200=2 Q203=+0 Q204=10 Q370=1\nCYCL CALL"
+        );
+        tips(&text).iter().filter(|tip| tip[2] == -6.0).count()
+    };
+    assert!(bottom(0.5) > bottom(0.0) + 4);
+}

@@ -308,3 +308,42 @@ fn numbered_spindles_and_feeds_in_inches() {
     assert!(assumes("G70 X0 Y0 Z0\nG1 X1 F10"));
     assert!(!assumes("G700 X0 Y0 Z0\nG1 X1 F10") && !assumes("X0 Y0 Z0\nG1 X1 F10"));
 }
+
+#[test]
+fn another_tool_has_its_first_edge() {
+    let start = "$TC_DP6[1,1]=1\n$TC_DP6[1,2]=2\n$TC_DP6[2,1]=3\n$TC_DP6[2,2]=4\nT1 M6\nD2\n";
+    let beside = |tool: &str| {
+        let text = format!("{start}{tool}\nG0 X0 Y0 Z0\nG1 G41 X10 Y0 F100\nX20\nG40 X30 Y0");
+        tips(&text)[1][1]
+    };
+    let found = ["G0", "T2 M6", "T2 M6 D2", "T2 M6\nD2"].map(beside);
+    assert_eq!(found, [2.0, 3.0, 4.0, 4.0]);
+    // So it has its length, whatever was before it.
+    let text = "T1 M6\nX0 Y0 Z0\nG0 Z5 D0\nT2 M6\nX0 Y0 Z5\nG1 Z-1 F100";
+    ends_at(text, [0.0, 0.0, -1.0]);
+    let left_out = |text: &str| {
+        read(text)
+            .assumptions
+            .iter()
+            .any(|a| a.what.contains("feed moves without"))
+    };
+    assert!(left_out("X0 Y0 Z0\nG1 X5 F100 D0") && !left_out("X0 Y0 Z0\nG0 X5 D0"));
+    assert!(
+        read("DIAMON\nX0 Y0 Z0")
+            .assumptions
+            .iter()
+            .any(|a| a.what.contains("diameter"))
+    );
+}
+
+#[test]
+fn finishing_takes_the_floor_that_was_left() {
+    let start = "T1 D1\n$TC_DP6[1,1]=2\nG0 X0 Y0 Z20 F100\n";
+    // Rings at the bottom, or the last one alone.
+    let moves = |floor: f64, vari: u32| {
+        let text = format!("{start}POCKET3(10,0,2,-6,30,20,5,0,0,0,3,0.2,{floor},100,100,0,{vari})");
+        tips(&text).iter().filter(|tip| tip[2] == -6.0).count()
+    };
+    assert!(moves(0.5, 2) > moves(0.0, 2) + 4);
+    assert_eq!(moves(0.5, 4), moves(0.0, 4));
+}

@@ -114,6 +114,8 @@ pub(super) struct Defined<'a> {
     pub(super) parameters: &'a Parameters,
     pub(super) unit: f64,
     pub(super) feed_unit: f64,
+    pub(super) speed: Option<f64>,
+    pub(super) per_revolution: bool,
 }
 
 impl Defined<'_> {

@@ -132,6 +132,11 @@ impl Reader<'_> {
                     _ => 1,
                 };
             }
+            "DIAMON" | "DIAM90" => {
+                let taken = "no: a mill's X";
+                let what = format!("whether X is a diameter ({name})");
+                self.track.assume(Assumption::new(what, taken, "DIAMOF"));
+            }
             "CYCLE832" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
@@ -307,7 +312,7 @@ impl Reader<'_> {
 }
 
 /// Keywords that change no programmed point.
-const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF SOFT BRISK DRIVE FFWON FFWOF DIAMOF DIAMON STOPRE \
+const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF SOFT BRISK DRIVE FFWON FFWOF DIAMOF STOPRE \
     ORIWKS ORIMKS ORIAXES ORIVECT ORIPLANE ORIROTA ORIC ORID ORISON ORISOF OSC OSD OSOF OSS OSSE UPATH SPATH \
     DISPLON DISPLOF SAVE SBLON SBLOF WALIMON WALIMOF STARTFIFO STOPFIFO FIFOCTRL CFC CFTCP CFIN CDON CDOF CDOF2 \
     RTLION RTLIOF FENDNORM G1COMP OEMIPO1 TOWSTD CP EXECUTE PAROTOF TOROTOF";

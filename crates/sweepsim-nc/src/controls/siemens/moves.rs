@@ -78,8 +78,14 @@ impl Reader<'_> {
             return self.go_in_machine_coordinates(words, abc);
         }
         if self.without_length() {
-            self.track
-                .note("moves without the tool's length (D0) are left out: the path breaks here");
+            if self.modes.motion == Motion::Rapid {
+                self.track
+                    .note("moves without the tool's length (D0) are left out: the path breaks here");
+            } else {
+                let taken = "left out: the path breaks there";
+                let what = "where feed moves without the tool's length (D0) go";
+                self.track.assume(Assumption::new(what, taken, "D1 before them"));
+            }
             self.track.turn_unknown(abc).map_err(here)?;
             self.track.leave(linear);
             return Ok(());

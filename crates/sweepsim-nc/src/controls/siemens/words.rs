@@ -263,6 +263,19 @@ impl Reader<'_> {
         number
     }
 
+    /// Another tool comes into the spindle, with its first edge, as machines are delivered.
+    fn insert(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
+        if tool.is_some() && tool != self.track.tool {
+            self.select_edge(1.0);
+        }
+        self.track.change_tool(tool)
+    }
+
+    fn select_edge(&mut self, edge: f64) {
+        self.modes.without_length = edge == 0.0;
+        self.modes.edge = edge as u32;
+    }
+
     fn select(&mut self, number: u32) -> Result<(), NcProblem> {
         self.modes.selected = Some(number);
         // Programs without M6 change their tools by T alone; so does the first T of others, which may lie in the spindle.
@@ -275,7 +288,7 @@ impl Reader<'_> {
             let what = "when T changes the tool";
             self.track.assume(Assumption::new(what, taken, "M6 where it changes"));
         }
-        self.track.change_tool(Some(number))?;
+        self.insert(Some(number))?;
         Ok(())
     }
 
@@ -304,14 +317,13 @@ impl Reader<'_> {
                 self.track.assume(Assumption::new(what, taken, "G700").harmless());
             }
         }
-        if let Some(offset) = words.plain("D") {
-            self.modes.without_length = offset == 0.0;
-            self.modes.edge = offset as u32;
-        }
         if let Some(word) = words.get("T") {
             NcProblem::whole("a tool number", word.value, 0..=u32::MAX, "a whole number")
                 .and_then(|tool| self.select(tool))
                 .map_err(|problem| (problem, word.span.clone()))?;
+        }
+        if let Some(offset) = words.plain("D") {
+            self.select_edge(offset);
         }
         self.corner_words(words, action)?;
         if let Some(speed) = words.get("S").filter(|_| !action.dwell) {
@@ -332,9 +344,10 @@ impl Reader<'_> {
                 6.0 => {
                     action.tool_change = true;
                     let tool = self.modes.selected.filter(|tool| *tool > 0);
-                    self.track
-                        .change_tool(tool)
-                        .map_err(|problem| (problem, word.span.clone()))?;
+                    self.insert(tool).map_err(|problem| (problem, word.span.clone()))?;
+                    if let Some(edge) = words.plain("D") {
+                        self.select_edge(edge);
+                    }
                 }
                 7.0 => self.event(EventKind::Coolant(Coolant::Mist), word.span.clone())?,
                 8.0 => self.event(EventKind::Coolant(Coolant::Flood), word.span.clone())?,

@@ -24,6 +24,8 @@ impl Reader<'_> {
             parameters: &self.parameters,
             unit: self.unit(),
             feed_unit: self.feed_unit(),
+            speed: self.modes.speed,
+            per_revolution: self.modes.per_revolution,
         }
     }
 

@@ -7,6 +7,7 @@ use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::line::Line;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::{HoleCycle, HoleWork, Pecks, UNKNOWN_TOOL, WayOut};
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// By how much cycle 202 leaves the wall, in mm.
@@ -26,6 +27,11 @@ impl Reader<'_> {
             }
             _ => None,
         };
+        if matches!(number, 200 | 203 | 205 | 241) && self.defined(number, line).number(395)? == 1.0 {
+            let what = format!("how deep the point of the drill is below the depth of cycle {number} (Q395=1)");
+            let taken = "not at all: the depth is that of the point";
+            self.track.assume(Assumption::new(what, taken, "Q395=0"));
+        }
         let defined = self.defined(number, line);
         let hole = hole(&defined, tool)?;
         let front = defined.find(359)?.is_some_and(|_| matches!(number, 263..=267)) && defined.span(358)? != 0.0;
@@ -123,6 +129,10 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
         }
         // Boring, reaming and tapping.
         _ => {
+            if let (207 | 209, Some(speed)) = (number, defined.speed) {
+                let pitch = defined.need(239)?.abs() / defined.unit;
+                hole.feed = Some(if defined.per_revolution { pitch } else { pitch * speed });
+            }
             let out = defined.feed(208)?.filter(|feed| *feed > 0.0);
             hole.out = WayOut::FeedToStart(out);
             if number == 202 {

@@ -103,6 +103,11 @@ impl Arguments<'_> {
         Ok([retract, surface + self.length(2).abs(), surface, bottom])
     }
 
+    /// Whether finishing takes the floor too: if something was left there, and not of the edge alone (4).
+    pub fn finishes_floor(&self, index: usize, left: usize) -> bool {
+        self.get(index).is_some_and(|kind| kind % 10.0 == 2.0) && self.length(left) != 0.0
+    }
+
     /// Whether the last digit of a way of machining asks for finishing alone.
     pub fn finishes(&self, index: usize) -> bool {
         self.get(index).is_some_and(|kind| kind % 10.0 >= 2.0)

@@ -44,7 +44,8 @@ pub(super) fn function(name: &str, values: &[f64]) -> Result<f64, NcProblem> {
         ("TAN", [x]) => x.to_radians().tan(),
         ("ASIN", [x]) if x.abs() <= 1.0 => x.asin().to_degrees(),
         ("ACOS", [x]) if x.abs() <= 1.0 => x.acos().to_degrees(),
-        ("ATAN2", [y, x]) => y.atan2(*x).to_degrees(),
+        // 0 has no sign.
+        ("ATAN2", [y, x]) => (y + 0.0).atan2(*x).to_degrees(),
         ("SQRT", [x]) if *x >= 0.0 => x.sqrt(),
         ("POT", [x]) => x * x,
         ("ABS", [x]) => x.abs(),
