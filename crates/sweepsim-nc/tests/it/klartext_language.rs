@@ -250,6 +250,15 @@ fn depths_feeds_and_finishing_of_cycles() {
         &format!("{drill} Q395=0\nCYCL CALL"),
         "the point of the drill"
     ));
+    // Centring comes out in rapid, and pecks do not shrink to nothing.
+    let feeds = |text: &str| read(text).poses.iter().filter(|pose| pose.feed.is_some()).count();
+    assert_eq!(
+        feeds("CYCL DEF 240 CENTERING Q200=2 Q201=-2 Q206=80 Q203=+0 Q204=10\nCYCL CALL"),
+        1
+    );
+    let pecks = "CYCL DEF 203 DRILLING Q200=2 Q201=-5 Q206=80 Q202=1 Q203=+0 Q204=10 Q212=0.3 Q205=0\nCYCL CALL";
+    // 1, 0.7, 0.4, and nine of 0.3 with what is left.
+    assert_eq!(feeds(pecks), 13);
     // Tapping feeds by its pitch.
     let tapped = read("CYCL DEF 207 RIGID TAPPING Q200=2 Q201=-5 Q239=+1.5 Q203=+0 Q204=10\nCYCL CALL");
     assert_eq!(tapped.poses.iter().find_map(|pose| pose.feed), Some(1500.0));

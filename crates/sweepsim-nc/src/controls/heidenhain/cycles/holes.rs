@@ -96,6 +96,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
             least: least.max(1e-3),
             clears: true,
             above: clearance.min(1.0),
+            rounding: 1e-9,
             ..Pecks::default()
         })
     };
@@ -103,7 +104,10 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
     match number {
         200 | 203 | 205 => {
             if let Some(infeed) = infeed {
-                hole.work = pecks(infeed, [defined.span(212)?.max(0.0), defined.span(205)?]);
+                // Without a least infeed they decrease to the decrement: no shorter ones are known of.
+                let decrement = defined.span(212)?.max(0.0);
+                let least = defined.length(205)?.filter(|least| *least > 0.0);
+                hole.work = pecks(infeed, [decrement, least.unwrap_or(decrement)]);
             }
             if let (203, Some(out)) = (number, defined.feed(208)?.filter(|feed| *feed > 0.0)) {
                 hole.out = WayOut::FeedToStart(Some(out));
@@ -127,6 +131,8 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
             all.push(hole);
             return Ok(all);
         }
+        // Out in rapid.
+        240 => {}
         // Boring, reaming and tapping.
         _ => {
             if let (207 | 209, Some(speed)) = (number, defined.speed) {

@@ -50,7 +50,7 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
             infeed,
             decrease: degression,
             least: degression.max(1e-3),
-            rounding: 0.0,
+            rounding: 1e-9,
             dwells: true,
             clears: get(11) == Some(1.0),
             above: 1.0,
