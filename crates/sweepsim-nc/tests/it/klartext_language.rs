@@ -203,6 +203,12 @@ fn normals_with_oversizes_are_errors_with_and_without_tool_vectors() {
 }
 
 #[test]
+fn turning_is_an_error() {
+    assert!(error("FUNCTION MODE TURN\nL X+5").contains("FUNCTION MODE TURN is not supported"));
+    ends_at("FUNCTION MODE MILL\nL X+5", [5.0, 0.0, 0.0]);
+}
+
+#[test]
 fn programs_that_are_called() {
     // QL are each program's own.
     let text = "QL1 = 5\nCALL PGM LOCAL\nL X+QL1 Y+Q1\nCALL PGM LOCAL\nL Y+Q1";

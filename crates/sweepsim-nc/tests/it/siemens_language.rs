@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sweepsim_nc::{EventKind, NcError, Program, ReadOptions, Spindle, siemens};
+use sweepsim_nc::{EventKind, FeedMode, NcError, Program, ReadOptions, Spindle, siemens};
 
 fn attempt(text: &str) -> Result<Program, NcError> {
     let called = |name: &str| (name == "HOLE").then(|| (PathBuf::from("HOLE.SPF"), "G91 Z-1\nZ1\nG90\nM17".to_owned()));
@@ -45,7 +45,9 @@ fn comparisons_come_last_and_bits_before_logic() {
         [3.0, 0.0, 0.0],
     );
     ends_at("X='HFF' Y='B101' Z='D9'", [255.0, 5.0, 9.0]);
-    assert!(error("R1='HXY'").contains("'HFF' or 'B101'"));
+    for text in ["R1='HXY'", "R1='", "R1='5", "R1='é'", "R1=''"] {
+        assert!(error(text).contains("'HFF' or 'B101'"), "{text}");
+    }
 }
 
 #[test]
@@ -86,6 +88,15 @@ fn modal_calls_go_on_in_subprograms() {
         %_N_PLACES_SPF\nX10 Y0\nX20\nM17\n";
     let deepest: Vec<f64> = tips(text).iter().filter(|tip| tip[2] < 0.0).map(|tip| tip[0]).collect();
     assert_eq!(deepest, [10.0, 20.0]);
+    // Whether one outlives its own subprogram is not known.
+    let text = "%_N_MAIN_MPF\nG0 X0 Y0 Z9 F100\nSUB\nX9\nM30\n%_N_SUB_SPF\nMCALL CYCLE81(10,0,2,-5)\nX1\nM17\n";
+    assert_eq!(tips(text).iter().filter(|tip| tip[2] < 0.0).count(), 1);
+    assert!(
+        read(text)
+            .assumptions
+            .iter()
+            .any(|a| a.what.contains("modal call goes on"))
+    );
     // What is called is not called by its own moves, with a number or a name.
     for name in ["L70", "HOLES"] {
         let text = format!(
@@ -156,7 +167,7 @@ fn names_of_axes_are_no_variables() {
         assert!(error(text).contains("may be an axis"), "{text}");
     }
     ends_at("DEF REAL C1\nC1=9\nX=C1 Y0 Z0", [9.0, 0.0, 0.0]);
-    for text in ["ROTS X30 Y20", "AROTS X30"] {
+    for text in ["ROTS X30 Y20", "AROTS X30", "AX[R1]=5", "G[8]=2", "IP[X]=3"] {
         assert!(error(&format!("X0 Y0 Z0\n{text}")).contains("not supported"), "{text}");
     }
 }

@@ -3,43 +3,11 @@
 use std::rc::Rc;
 
 use super::interpreter::Reader;
-use super::line::Line;
-use super::routine::Routine;
+use super::language::line::Line;
+use super::language::routine::Routine;
+use super::state::{Level, LevelKind};
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::{Located, NcProblem};
-
-/// A program, subprogram or repeated section on its way.
-pub(super) struct Level {
-    pub(super) routine: usize,
-    pub(super) next: usize,
-    pub(super) kind: LevelKind,
-    /// The parameters of its caller alone, which come back at its end.
-    pub(super) locals: Option<Vec<(String, f64)>>,
-}
-
-impl Level {
-    pub(super) fn new(routine: usize, next: usize, kind: LevelKind) -> Self {
-        let locals = None;
-        Self {
-            routine,
-            next,
-            kind,
-            locals,
-        }
-    }
-}
-
-pub(super) enum LevelKind {
-    Program,
-    /// Until LBL 0.
-    Subprogram,
-    /// From `from` to before `end`, this many more times.
-    Section {
-        from: usize,
-        end: usize,
-        times: usize,
-    },
-}
 
 impl Reader<'_> {
     pub(super) fn push(&mut self, level: Level, line: &Line) -> Result<(), Located> {

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::calls::{Level, LevelKind};
 use super::frames::Frames;
-use super::line::{self, Line};
-use super::routine::Routine;
-use super::state::{Cycles, FreeContour, Modes, Pattern};
-use super::values::{Jump, Parameters};
+use super::language::line::{self, Line};
+use super::language::routine::Routine;
+use super::language::values::{Jump, Parameters};
+use super::state::{Cycles, FreeContour, Level, LevelKind, Modes, Pattern};
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{ProgramPlace, Sense, Track};
 use crate::model::event::EventKind;

@@ -12,16 +12,13 @@
 mod calls;
 mod contours;
 mod cycles;
-mod formula;
 mod frames;
 mod interpreter;
-mod line;
+mod language;
 mod moves;
 mod planes;
-mod routine;
 mod settings;
 mod state;
-mod values;
 mod words;
 
 pub use super::run::Library;

@@ -1,7 +1,7 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
 use super::interpreter::Reader;
-use super::line::Line;
+use super::language::line::Line;
 use super::words::{Datum, MoveWords};
 use crate::machines::SHORTEST;
 use crate::text::assumption::Assumption;

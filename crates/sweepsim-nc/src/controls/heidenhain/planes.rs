@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::{self, Line};
 use crate::machines::WorkFrame;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};

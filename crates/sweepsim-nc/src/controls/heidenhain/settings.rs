@@ -1,7 +1,7 @@
 //! Tools, stock and M codes.
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::{self, Line};
 use crate::drive::Coordinates;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::text::error::{Located, NcProblem};
@@ -220,6 +220,11 @@ impl Reader<'_> {
         match (line.word(1), line.word(2)) {
             ("TCPM", _) => self.control(true).map_err(|problem| (problem, line.all()))?,
             ("RESET", "TCPM") => self.control(false).map_err(|problem| (problem, line.all()))?,
+            // X is a diameter there.
+            ("MODE", "TURN") => {
+                let problem = NcProblem::unsupported("FUNCTION MODE TURN is", "expected FUNCTION MODE MILL");
+                return Err((problem, line.all()));
+            }
             ("MODE" | "FEED" | "DWELL" | "S-PULSE" | "SPINDLE" | "TOUCHPROBE", _) => {}
             // Whether contours are those of the tool or of the part matters to paths in space alone.
             ("PROG", "PATH") => self

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 
-use super::line::Line;
-use super::values::Parameters;
+use super::language::line::Line;
+use super::language::values::Parameters;
 use crate::drive::free::{Flat, Solved};
 use crate::drive::{Cycle, Pocket};
 use crate::model::event::Spindle;
@@ -183,4 +183,37 @@ impl Defined<'_> {
     pub fn fail(&self, problem: NcProblem) -> Located {
         (problem, self.line.all())
     }
+}
+
+/// A program, subprogram or repeated section on its way.
+pub(super) struct Level {
+    pub(super) routine: usize,
+    pub(super) next: usize,
+    pub(super) kind: LevelKind,
+    /// The parameters of its caller alone, which come back at its end.
+    pub(super) locals: Option<Vec<(String, f64)>>,
+}
+
+impl Level {
+    pub(super) fn new(routine: usize, next: usize, kind: LevelKind) -> Self {
+        let locals = None;
+        Self {
+            routine,
+            next,
+            kind,
+            locals,
+        }
+    }
+}
+
+pub(super) enum LevelKind {
+    Program,
+    /// Until LBL 0.
+    Subprogram,
+    /// From `from` to before `end`, this many more times.
+    Section {
+        from: usize,
+        end: usize,
+        times: usize,
+    },
 }

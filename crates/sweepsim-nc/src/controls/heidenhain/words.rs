@@ -1,7 +1,7 @@
 //! The words of a move.
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::{self, Line};
 use crate::model::program::FeedMode;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};

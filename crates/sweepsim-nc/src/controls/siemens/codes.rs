@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, UNCHECKED, hole_cycle, thread, workpiece};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
-use super::level::Call;
+use super::language::structures::Call;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
@@ -212,7 +212,7 @@ impl Reader<'_> {
                 self.go_to_place(place, f64::NEG_INFINITY).map_err(here)?;
             }
             if modal {
-                self.modes.modal_call = Some(Modal::Cycle(cycle));
+                self.call_modally(Modal::Cycle(cycle));
                 return Ok(());
             }
             return self
@@ -244,7 +244,7 @@ impl Reader<'_> {
             modally: modal,
         };
         if modal {
-            self.modes.modal_call = Some(Modal::Program(call));
+            self.call_modally(Modal::Program(call));
         } else {
             self.pending = Some(call);
         }

@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
+use super::language::cursor::changes_by_m6;
 use super::language::expression::{self, Expression, Value};
 use super::language::routine::{Routine, parts};
-use super::language::structures::{Item, Statement};
-use super::level::{Call, Level, Section, changes_by_m6};
-use super::state::{Contours, Frames, Modes};
+use super::language::structures::{Call, Item, Statement};
+use super::state::{Contours, Frames, Level, Modes, Section};
 use crate::controls::run::{self, BlockIndex, DEEPEST_CALL, Library, Running};
 use crate::drive::{Sense, Track};
 use crate::model::names::Format;

@@ -17,7 +17,6 @@ mod cycles;
 mod frames;
 mod interpreter;
 mod language;
-mod level;
 mod moves;
 mod places;
 mod state;

@@ -1,8 +1,7 @@
 //! The moves of a block.
 
 use super::interpreter::Reader;
-use super::level::Call;
-use super::places::MACHINE_AXES;
+use super::language::structures::Call;
 use super::state::{Modal, Motion};
 use super::words::{Action, Meaning, Word, Words, unknown_axis};
 use crate::machines::SHORTEST;
@@ -11,6 +10,8 @@ use crate::text::error::{Located, NcProblem};
 
 pub(super) const LINEAR: [&str; 3] = ["X", "Y", "Z"];
 pub(super) const ROTARY: [&str; 3] = ["A", "B", "C"];
+/// The axes by the names of the machine.
+pub(super) const MACHINE_AXES: [&str; 3] = ["X1", "Y1", "Z1"];
 const VECTOR: [&str; 3] = ["A3", "B3", "C3"];
 
 impl Reader<'_> {
@@ -40,7 +41,7 @@ impl Reader<'_> {
                 modally,
             };
             if modally {
-                self.modes.modal_call = Some(Modal::Program(call));
+                self.call_modally(Modal::Program(call));
             } else {
                 self.pending = Some(call);
             }

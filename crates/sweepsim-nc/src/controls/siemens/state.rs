@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::interpreter::Reader;
-use super::level::Call;
+use super::language::expression::Value;
+use super::language::structures::{Call, VariableKind};
 use crate::drive::{Corners, Cycle, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
 use crate::model::event::Spindle;
 use crate::model::program::FeedMode;
 use crate::model::read_options::ReadOptions;
-use crate::text::error::NcProblem;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +44,8 @@ pub(super) struct Modes {
     pub(super) without_length: bool,
     /// A cycle or subprogram at each position.
     pub modal_call: Option<Modal>,
+    /// How deep in calls the program is that has made it modal.
+    pub(super) modal_depth: usize,
     /// The tool's edge (`D`).
     pub edge: u32,
     /// An allowance of compensated contours (`OFFN`), in mm.
@@ -78,50 +79,16 @@ pub(super) enum Modal {
 
 /// What a subprogram with `SAVE` gives back: the G codes of all groups, and the programmable frame.
 pub(super) struct SavedModes {
-    motion: Motion,
-    plane: [usize; 3],
-    absolute: bool,
-    inch: bool,
-    exact_stop: bool,
-    corners: Corners,
-    round_ends: bool,
-    feed_mode: FeedMode,
-    offset: WorkOffset,
-    programmed: WorkFrame,
-}
-
-impl Reader<'_> {
-    pub(super) fn saved_modes(&self) -> SavedModes {
-        SavedModes {
-            motion: self.modes.motion,
-            plane: self.modes.plane,
-            absolute: self.modes.absolute,
-            inch: self.modes.inch,
-            exact_stop: self.modes.exact_stop,
-            corners: self.modes.corners,
-            round_ends: self.modes.round_ends,
-            feed_mode: self.track.feed_mode,
-            offset: self.frames.work.active,
-            programmed: self.frames.programmed,
-        }
-    }
-
-    pub(super) fn restore_modes(&mut self, saved: SavedModes) -> Result<(), NcProblem> {
-        self.modes = Modes {
-            motion: saved.motion,
-            plane: saved.plane,
-            absolute: saved.absolute,
-            inch: saved.inch,
-            exact_stop: saved.exact_stop,
-            corners: saved.corners,
-            round_ends: saved.round_ends,
-            ..std::mem::take(&mut self.modes)
-        };
-        self.track.feed_mode = saved.feed_mode;
-        self.frames.work.active = saved.offset;
-        self.frames.programmed = saved.programmed;
-        self.apply_frames()
-    }
+    pub(super) motion: Motion,
+    pub(super) plane: [usize; 3],
+    pub(super) absolute: bool,
+    pub(super) inch: bool,
+    pub(super) exact_stop: bool,
+    pub(super) corners: Corners,
+    pub(super) round_ends: bool,
+    pub(super) feed_mode: FeedMode,
+    pub(super) offset: WorkOffset,
+    pub(super) programmed: WorkFrame,
 }
 
 impl Modes {
@@ -237,4 +204,62 @@ pub(super) struct Contours {
 pub(super) struct NamedContour {
     pub program: Option<String>,
     pub labels: Option<[String; 2]>,
+}
+
+/// A part of a program that is repeated.
+pub(super) struct Section {
+    pub(super) from: usize,
+    pub(super) end: usize,
+    pub(super) times: usize,
+    pub(super) then: usize,
+}
+
+/// A program or subprogram on its way.
+pub(super) struct Level {
+    pub(super) routine: usize,
+    pub(super) next: usize,
+    pub(super) locals: BTreeMap<String, Value>,
+    /// What locals hold, if it is not any number or text.
+    kinds: BTreeMap<String, VariableKind>,
+    /// Parameters that the caller's variables get at its end.
+    pub(super) returned: Vec<(String, String)>,
+    /// The caller's modes that come back at its end.
+    pub(super) saved: Option<Box<SavedModes>>,
+    /// Whether it is what a modal call calls, or a contour: moves in it call nothing.
+    pub(super) called_modally: bool,
+    pub(super) sections: Vec<Section>,
+    /// How often it starts again.
+    pub(super) times: usize,
+}
+
+impl Level {
+    pub(super) fn new(routine: usize, times: usize) -> Self {
+        Self {
+            routine,
+            next: 0,
+            locals: BTreeMap::new(),
+            kinds: BTreeMap::new(),
+            returned: Vec::new(),
+            saved: None,
+            called_modally: false,
+            sections: Vec::new(),
+            times,
+        }
+    }
+
+    pub(super) fn define(&mut self, name: String, value: Value, kind: VariableKind) {
+        if kind != VariableKind::Real {
+            self.kinds.insert(name.clone(), kind);
+        }
+        self.locals.insert(name, value);
+    }
+
+    /// A value as a local, or an element of a local array, holds it.
+    pub(super) fn held(&self, name: &str, value: Value) -> Value {
+        let array = name.split_once('[').map_or(name, |(array, _)| array);
+        match self.kinds.get(array) {
+            Some(kind) => kind.held(value),
+            None => value,
+        }
+    }
 }

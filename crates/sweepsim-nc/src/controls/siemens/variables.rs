@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use super::interpreter::{MOST_VARIABLES, Reader};
 use super::language::expression::{self, Expression, Kind, Value};
-use super::language::structures::Item;
-use super::level::{Call, Level};
+use super::language::structures::{Call, Item};
+use super::state::{Level, Modal, Modes, SavedModes};
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
@@ -175,8 +175,20 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// `MCALL` with a cycle or a subprogram.
+    pub(super) fn call_modally(&mut self, modal: Modal) {
+        self.modes.modal_call = Some(modal);
+        self.modes.modal_depth = self.stack.len();
+    }
+
     /// What the caller has of a program that has ended: the values of its parameters by reference, and the modes before it.
     pub(super) fn give_back(&mut self, level: Level) -> Result<(), NcProblem> {
+        if self.modes.modal_depth > self.stack.len() && !self.stack.is_empty() && self.modes.modal_call.take().is_some()
+        {
+            let taken = "no: it ends with it";
+            let what = "whether a modal call goes on after the subprogram that has made it";
+            self.track.assume(Assumption::new(what, taken, "MCALL at its end"));
+        }
         for (parameter, variable) in level.returned {
             if let Some(value) = level.locals.get(&parameter).cloned() {
                 self.assign(variable, value)?;
@@ -196,5 +208,37 @@ impl Reader<'_> {
         };
         let all = arguments.unwrap_or(&[]).iter();
         all.map(|argument| argument.as_ref().map_or(Ok(None), key)).collect()
+    }
+
+    pub(super) fn saved_modes(&self) -> SavedModes {
+        SavedModes {
+            motion: self.modes.motion,
+            plane: self.modes.plane,
+            absolute: self.modes.absolute,
+            inch: self.modes.inch,
+            exact_stop: self.modes.exact_stop,
+            corners: self.modes.corners,
+            round_ends: self.modes.round_ends,
+            feed_mode: self.track.feed_mode,
+            offset: self.frames.work.active,
+            programmed: self.frames.programmed,
+        }
+    }
+
+    pub(super) fn restore_modes(&mut self, saved: SavedModes) -> Result<(), NcProblem> {
+        self.modes = Modes {
+            motion: saved.motion,
+            plane: saved.plane,
+            absolute: saved.absolute,
+            inch: saved.inch,
+            exact_stop: saved.exact_stop,
+            corners: saved.corners,
+            round_ends: saved.round_ends,
+            ..std::mem::take(&mut self.modes)
+        };
+        self.track.feed_mode = saved.feed_mode;
+        self.frames.work.active = saved.offset;
+        self.frames.programmed = saved.programmed;
+        self.apply_frames()
     }
 }

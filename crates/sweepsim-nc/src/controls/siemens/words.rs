@@ -126,6 +126,10 @@ impl Reader<'_> {
                         self.modes.allowance = allowance * self.modes.unit();
                         continue;
                     }
+                    if let ("FZ", Value::Number(feed)) = (name.as_str(), &value) {
+                        self.feed_per_tooth(*feed);
+                        continue;
+                    }
                     if let ("FP", Value::Number(number)) = (name.as_str(), &value) {
                         action.fixed_point = Some(*number);
                         continue;
@@ -136,8 +140,11 @@ impl Reader<'_> {
                     ) {
                         continue;
                     }
-                    if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC") {
-                        let problem = NcProblem::unsupported(format!("{name} is"), "expected axes by their letters");
+                    if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC" | "AX" | "IP" | "G") {
+                        let problem = NcProblem::unsupported(
+                            format!("{name} is"),
+                            "expected axes by their letters, and G with its number",
+                        );
                         return Err((problem, span.clone()));
                     }
                     if indices.is_empty() && is_axis(name) && !self.is_variable(name) {
@@ -290,6 +297,15 @@ impl Reader<'_> {
         }
         self.insert(Some(number))?;
         Ok(())
+    }
+
+    /// `FZ=`, in `G95`.
+    fn feed_per_tooth(&mut self, feed: f64) {
+        let taken = "one: the feed per tooth is that per revolution";
+        let what = "the number of teeth, for FZ";
+        self.track.assume(Assumption::new(what, taken, "F in G95").harmless());
+        self.track.feed_mode = FeedMode::PerRevolution;
+        self.track.feed = Some(self.feed(feed));
     }
 
     /// A feed in the unit of the program.

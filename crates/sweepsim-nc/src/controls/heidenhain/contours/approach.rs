@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::CircularArc;
 use crate::text::error::{Located, NcProblem};

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::{CircularArc, Corner, CornerShape, ProgramPlace};
 use crate::text::error::{Located, NcProblem};

@@ -3,9 +3,9 @@
 //! Source: *TNC 620, Cycle Programming* (340 56x-02), 7.1 to 7.9. A contour is a pocket or an island by the side on which its subprogram has the tool, and the way around.
 
 use crate::controls::contour;
-use crate::controls::heidenhain::calls::{Level, LevelKind};
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::state::{Level, LevelKind};
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
 

@@ -1,7 +1,7 @@
 //! Cycles: which there are, and where they are called.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::planes::is_frame_cycle;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::Cycle;

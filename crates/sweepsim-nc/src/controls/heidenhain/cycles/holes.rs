@@ -4,7 +4,7 @@
 //! are left out.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::{HoleCycle, HoleWork, Pecks, UNKNOWN_TOOL, WayOut};
 use crate::text::assumption::Assumption;

@@ -5,7 +5,7 @@
 //! along the tool is added to the surface that the cycle has.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::{CyclePlace, Pattern};
 use crate::drive::Cycle;
 use crate::text::error::{Located, NcProblem};
@@ -106,7 +106,7 @@ impl Reader<'_> {
                 return Err((NcProblem::unsupported(found, "expected Z+0"), line.all()));
             };
             let raised = surface + above / self.unit();
-            let token = crate::controls::heidenhain::line::Token {
+            let token = crate::controls::heidenhain::language::line::Token {
                 text: format!("Q203={raised}"),
                 span: line.all(),
             };

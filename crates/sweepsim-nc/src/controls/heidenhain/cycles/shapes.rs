@@ -3,7 +3,7 @@
 //! Sources: *TNC 620, Cycle Programming* (340 56x-02), 5.2 to 5.7 and 8.1 to 8.5; *TNC 640* (34059x) for cycle 233.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::text::error::{Located, NcProblem};

@@ -7,7 +7,7 @@ use super::arguments::Arguments;
 use crate::controls::contour;
 use crate::controls::siemens::interpreter::Reader;
 use crate::controls::siemens::language::structures::Search;
-use crate::controls::siemens::level::Level;
+use crate::controls::siemens::state::Level;
 use crate::controls::siemens::state::NamedContour;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};

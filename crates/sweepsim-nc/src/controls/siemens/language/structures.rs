@@ -74,6 +74,17 @@ pub(crate) enum Statement {
     Declaration,
 }
 
+/// A call of a subprogram that is still to be made.
+#[derive(Clone, Debug)]
+pub(crate) struct Call {
+    pub name: String,
+    pub values: Vec<Value>,
+    /// The caller's variables among the arguments, each in its place.
+    pub variables: Vec<Option<String>>,
+    pub times: usize,
+    pub modally: bool,
+}
+
 /// What a variable holds: what it gets becomes that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum VariableKind {
@@ -88,10 +99,10 @@ pub(crate) enum VariableKind {
 impl VariableKind {
     fn named(name: &str) -> Option<Self> {
         Some(match name {
-            "REAL" | "AXIS" | "FRAME" => Self::Real,
+            "REAL" | "AXIS" | "FRAME" | "CHAR" => Self::Real,
             "INT" => Self::Whole,
             "BOOL" => Self::Truth,
-            "STRING" | "CHAR" => Self::Text,
+            "STRING" => Self::Text,
             _ => return None,
         })
     }

@@ -9,7 +9,7 @@ mod words;
 use std::collections::VecDeque;
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::CircularArc;
 use crate::drive::free::{Element, Flat, Solved, Unsolved, contour, unit};

@@ -1,19 +1,17 @@
 //! Formulas of Q parameters.
 
-use super::values::Parameters;
 use crate::text::error::NcProblem;
+
+/// Where numbers and parameters get their values from.
+type Lookup<'a> = &'a dyn Fn(&str) -> Result<f64, NcProblem>;
 
 /// The deepest nesting of a formula.
 const DEEPEST: usize = 60;
 
 /// The value of a formula.
-pub(super) fn value(text: &str, parameters: &Parameters) -> Result<f64, NcProblem> {
+pub(in crate::controls::heidenhain) fn value(text: &str, lookup: Lookup) -> Result<f64, NcProblem> {
     let depth = 0;
-    let mut parser = Parser {
-        text,
-        parameters,
-        depth,
-    };
+    let mut parser = Parser { text, lookup, depth };
     let value = parser.sum()?;
     match parser.text.trim() {
         "" => Ok(value),
@@ -25,7 +23,7 @@ pub(super) fn value(text: &str, parameters: &Parameters) -> Result<f64, NcProble
 
 struct Parser<'a> {
     text: &'a str,
-    parameters: &'a Parameters,
+    lookup: Lookup<'a>,
     depth: usize,
 }
 
@@ -140,7 +138,7 @@ impl Parser<'_> {
                     "the formula ends too early, or has a sign that is not understood",
                 ));
             }
-            word => self.parameters.value(word)?,
+            word => (self.lookup)(word)?,
         })
     }
 }

@@ -12,7 +12,7 @@ const MOST: usize = 100_000;
 
 /// What an FN asks for besides a value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Jump {
+pub(in crate::controls::heidenhain) enum Jump {
     None,
     /// To a label.
     To(String),
@@ -26,7 +26,7 @@ pub(super) enum Jump {
 
 /// Q parameters.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Parameters {
+pub(in crate::controls::heidenhain) struct Parameters {
     values: BTreeMap<String, f64>,
     /// Whether those that nothing sets are an error: else they are 0, and asked for.
     strict: bool,
@@ -121,7 +121,7 @@ impl Parameters {
         let Some((name, formula)) = text.split_once('=') else {
             return Err(whole(NcProblem::syntax(format!("{text:?}: expected Q1 = a value"))));
         };
-        let value = formula::value(formula, self).map_err(whole)?;
+        let value = formula::value(formula, &|name| self.value(name)).map_err(whole)?;
         self.set(name.trim(), value).map_err(whole)
     }
 
