@@ -201,6 +201,10 @@ fn feeds_of_blocks_and_stops_after_moves() {
     let program = read("X0 Y0 Z0\nG1 X1 F100\nX2 FB=50\nX3 M0\nX4 FB=20 F200\nX5");
     let feeds: Vec<Option<f64>> = program.poses.iter().skip(1).map(|pose| pose.feed).collect();
     assert_eq!(feeds, [100.0, 50.0, 100.0, 20.0, 200.0].map(Some));
+    let tooth = read("X0 Y0 Z0\nG1 X1 F100\nG95 FZ=0.1 X2");
+    let last = tooth.poses.last().unwrap();
+    assert_eq!((last.feed, last.feed_mode), (Some(0.1), FeedMode::PerRevolution));
+    assert!(tooth.assumptions.iter().any(|a| a.what.contains("number of teeth")));
     let stop = program
         .events
         .iter()
