@@ -368,7 +368,7 @@ fn bad_programs_say_where_and_what() {
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nPLANE AXIAL B+5",
-            "2:7: PLANE AXIAL is not supported yet: expected PLANE SPATIAL, EULER, VECTOR or RESET",
+            "2:7: PLANE AXIAL is not supported yet: expected PLANE SPATIAL, EULER, VECTOR, RELATIV or RESET",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nM138 A",

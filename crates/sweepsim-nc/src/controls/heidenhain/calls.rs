@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
-use super::interpreter::{Level, LevelKind, Reader};
-use super::line::Line;
-use super::routine::Routine;
+use super::interpreter::Reader;
+use super::language::line::Line;
+use super::language::routine::Routine;
+use super::state::{Level, LevelKind};
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::{Located, NcProblem};
 
@@ -51,14 +52,7 @@ impl Reader<'_> {
                 }
             }
         };
-        self.push(
-            Level {
-                routine,
-                next: from,
-                kind,
-            },
-            line,
-        )
+        self.push(Level::new(routine, from, kind), line)
     }
 
     pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
@@ -82,12 +76,12 @@ impl Reader<'_> {
                 self.routines.len() - 1
             }
         };
-        let level = Level {
-            routine,
-            next: 0,
-            kind: LevelKind::Program,
-        };
-        self.push(level, line)
+        self.push(Level::new(routine, 0, LevelKind::Program), line)?;
+        let locals = self.parameters.take_locals();
+        if let Some(level) = self.stack.last_mut() {
+            level.locals = Some(locals);
+        }
+        Ok(())
     }
 
     pub(super) fn jump(&mut self, label: &str, routine: usize) -> Result<(), NcProblem> {

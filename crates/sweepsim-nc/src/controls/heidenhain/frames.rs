@@ -16,6 +16,11 @@ pub(super) struct Frames {
     pub mirror: [bool; 3],
     pub rotation: f64,
     pub scale: Option<f64>,
+    /// `CYCL DEF 26`: the factors of the axes, and the point that stays.
+    pub axis_scales: [f64; 3],
+    pub fixed: [f64; 3],
+    /// Whether a shift or a plane came after a mirror, a rotation or a scale that is still in effect.
+    pub order_unknown: bool,
     /// `CYCL DEF 247`.
     pub work: WorkOffsets,
 }
@@ -34,12 +39,21 @@ impl Frames {
             mirror: [false; 3],
             rotation: 0.0,
             scale: None,
+            axis_scales: [1.0; 3],
+            fixed: [0.0; 3],
+            order_unknown: false,
             work: WorkOffsets::new(preset_name, 1000, options),
         }
     }
 
     pub fn tilted(&self) -> bool {
         self.tilt.is_some()
+    }
+
+    /// Whether a mirror, a rotation or a scale is in effect.
+    pub fn transformed(&self) -> bool {
+        let scaled = self.scale.is_some_and(|scale| scale != 1.0) || self.axis_scales != [1.0; 3];
+        self.mirror.contains(&true) || self.rotation != 0.0 || scaled
     }
 
     /// Whether arcs and lengths are turned or scaled within the plane.
@@ -57,6 +71,9 @@ impl Frames {
         }
         if let Some(scale) = self.scale.filter(|scale| *scale != 1.0) {
             frame = frame.then(&WorkFrame::scaled([scale; 3]));
+        }
+        if self.axis_scales != [1.0; 3] {
+            frame = frame.then(&WorkFrame::scaled(self.axis_scales).about(self.fixed));
         }
         frame
     }

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::frames::Frames;
-use super::line::{self, Line};
-use super::routine::Routine;
-use super::state::{Cycles, FreeContour, Pattern};
-use super::values::{Jump, Parameters};
+use super::language::line::{self, Line};
+use super::language::routine::Routine;
+use super::language::values::{Jump, Parameters};
+use super::state::{Cycles, FreeContour, Level, LevelKind, Modes, Pattern};
 use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{ProgramPlace, Sense, Track};
-use crate::model::event::{EventKind, Spindle};
+use crate::model::event::EventKind;
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
@@ -18,44 +18,6 @@ use crate::model::stock::StockDescription;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcError, NcProblem};
 use crate::tools::comments;
-
-/// A program, subprogram or repeated section on its way.
-pub(super) struct Level {
-    pub(super) routine: usize,
-    pub(super) next: usize,
-    pub(super) kind: LevelKind,
-}
-
-pub(super) enum LevelKind {
-    Program,
-    /// Until LBL 0.
-    Subprogram,
-    /// From `from` to before `end`, this many more times.
-    Section {
-        from: usize,
-        end: usize,
-        times: usize,
-    },
-}
-
-/// What stays in effect until another word changes it.
-#[derive(Default)]
-pub(super) struct Modes {
-    pub inch: bool,
-    pub plane: [usize; 3],
-    pub tip_control: bool,
-    pub shortest: bool,
-    /// The centre of CC, in the frame.
-    pub centre: Option<[f64; 2]>,
-    /// The side of the contour: RL.
-    pub compensated: Option<bool>,
-    /// The radii of TOOL DEF, in mm.
-    pub radii: BTreeMap<u32, f64>,
-    /// DR of TOOL CALL, in mm.
-    pub oversize: f64,
-    pub speed: Option<f64>,
-    pub spindle: Spindle,
-}
 
 pub(super) struct Reader<'a> {
     pub track: Track,
@@ -67,6 +29,8 @@ pub(super) struct Reader<'a> {
     pub cycles: Cycles,
     pub free: FreeContour,
     pub uncertain: bool,
+    /// What the codes of a block do at its end.
+    pub(super) at_end: Vec<EventKind>,
     /// The program of SEL PGM.
     pub(super) selected: Option<String>,
     pub(super) library: Library<'a>,
@@ -95,16 +59,13 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         cycles: Cycles::default(),
         free: FreeContour::default(),
         uncertain: false,
+        at_end: Vec::new(),
         selected: None,
         library,
         options,
         routines: vec![Routine::new(0, Rc::clone(text))],
         names: BTreeMap::new(),
-        stack: vec![Level {
-            routine: 0,
-            next: 0,
-            kind: LevelKind::Program,
-        }],
+        stack: vec![Level::new(0, 0, LevelKind::Program)],
         ended: false,
         tools: BTreeMap::new(),
         stock: [[None; 3]; 2],
@@ -171,6 +132,7 @@ impl Running for Reader<'_> {
     fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
         let line = self.routines[routine].block(index);
         let result = self.block(&line, routine, index);
+        let result = result.and_then(|()| self.end_codes(&line));
         for name in self.parameters.asked() {
             let settle = format!("{name} = … in the program");
             let assumption = Assumption::new(format!("the value of {name}"), "0: nothing sets it", settle);
@@ -213,7 +175,9 @@ impl Reader<'_> {
     }
 
     pub(super) fn back(&mut self) {
-        self.stack.pop();
+        if let Some(locals) = self.stack.pop().and_then(|level| level.locals) {
+            self.parameters.give_locals(locals);
+        }
         if self.stack.is_empty() {
             self.ended = true;
         } else {
@@ -266,8 +230,14 @@ impl Reader<'_> {
         }
         match line.word(0) {
             "BEGIN" if line.word(1) == "PGM" => {
+                let inch = line.tokens.last().is_some_and(|token| token.text == "INCH");
+                if self.stack.len() > 1 && inch != self.modes.inch {
+                    let problem = "a program that is called, in other units than its caller, is";
+                    let expected = "expected the same in both heads, MM or INCH";
+                    return Err((NcProblem::unsupported(problem, expected), line.all()));
+                }
                 if self.stack.len() == 1 {
-                    self.modes.inch = line.tokens.last().is_some_and(|token| token.text == "INCH");
+                    self.modes.inch = inch;
                     self.track.program.title = line
                         .tokens
                         .get(2)
@@ -278,7 +248,7 @@ impl Reader<'_> {
             "BLK" => self.stock_corner(line)?,
             "TOOL" if line.word(1) == "CALL" => self.tool_call(line)?,
             "TOOL" if line.word(1) == "DEF" => self.tool_definition(line)?,
-            "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CC" | "RND" | "CHF" | "M140" => self.path(line)?,
+            "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CTP" | "CC" | "RND" | "CHF" | "M140" => self.path(line)?,
             "FL" | "FLT" | "FC" | "FCT" | "FPOL" => self.free_block(line)?,
             // Which of several contours, by the control's own numbers: said where there are several.
             word if word.starts_with("FSELECT") => {}
@@ -341,7 +311,7 @@ impl Reader<'_> {
             word => {
                 let problem = NcProblem::unsupported(
                     format!("{word} is"),
-                    "expected L, C, CC, CR, CT, CP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
+                    "expected L, C, CC, CR, CT, CP, CTP, LP, LN, RND, CHF, TOOL CALL, LBL, CALL, FN, Q, CYCL or PLANE",
                 );
                 return Err((problem, line.span(0)));
             }
@@ -360,6 +330,16 @@ impl Reader<'_> {
         match self.parameters.function(line)? {
             Jump::None => {}
             Jump::To(label) => self.jump(&label, routine).map_err(whole)?,
+            Jump::Stop(error) => {
+                let what = format!(
+                    "whether the program goes on after the error {}",
+                    error.trim_start_matches('=')
+                );
+                let taken = "FN 14 ends it: what follows is left out";
+                let settle = "the path without FN 14";
+                self.track.assume(Assumption::new(what, taken, settle));
+                self.ended = true;
+            }
             Jump::Ignored(number) => self.track.note(format!("FN {number} moves nothing: ignored")),
             Jump::Read(name, of) => {
                 // ID270: where the tool is, in the coordinates of the program.

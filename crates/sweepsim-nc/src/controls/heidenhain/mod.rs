@@ -1,9 +1,9 @@
 //! Programs of Heidenhain's controls in Klartext.
 //!
-//! Read: `BEGIN PGM … MM|INCH`, `BLK FORM` of blocks (the stock), `TOOL CALL` by number or name, `L LP LN C CC CP CR CT` in Cartesian and polar,
+//! Read: `BEGIN PGM … MM|INCH`, `BLK FORM` of blocks (the stock), `TOOL CALL` by number or name, `L LP LN C CC CP CR CT CTP` in Cartesian and polar,
 //! absolute and incremental coordinates, cutter compensation (`RL RR R0`), `RND`, `CHF` between lines, `FMAX`, labels with calls and repeats, `CALL PGM`, `Q` parameters with
-//! `FN 0` to `FN 13` and formulas, datum shift, mirror, rotation, scale and presets (cycles 7, 8, 10, 11, 247), dwell (9), drilling and milling cycles
-//! 200 to 209, 240, 241, 251 to 253, 256, 257 and 262 by `CYCL CALL` or `M99`, `PLANE SPATIAL | EULER | VECTOR | RESET`, and tip control (`M128`, `FUNCTION TCPM`)
+//! `FN 0` to `FN 14` and formulas, datum shift, mirror, rotation, scale and presets (cycles 7, 8, 10, 11, 26, 247), dwell (9), programs (12), drilling and milling cycles
+//! 200 to 209, 240, 241, 251 to 253, 256, 257 and 262 by `CYCL CALL`, `M99` or `M89`, `PLANE SPATIAL | EULER | VECTOR | RELATIV | RESET`, and tip control (`M128`, `FUNCTION TCPM`)
 //! with rotary axes or with tool vectors `TX TY TZ`. Moves with `M91` are left out where the machine does not know the place, and so are all with `M92`.
 //!
 //! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Other cycles are errors
@@ -14,13 +14,12 @@ mod contours;
 mod cycles;
 mod frames;
 mod interpreter;
-mod line;
+mod language;
 mod moves;
 mod planes;
-mod routine;
 mod settings;
 mod state;
-mod values;
+mod words;
 
 pub use super::run::Library;
 pub(crate) use interpreter::read as read_kept;

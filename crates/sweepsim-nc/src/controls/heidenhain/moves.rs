@@ -1,140 +1,13 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::Line;
+use super::words::{Datum, MoveWords};
 use crate::machines::SHORTEST;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
-/// The words of a move.
-#[derive(Clone, Debug, Default)]
-pub(super) struct MoveWords {
-    /// X, Y, Z and A, B, C: value, and whether it is incremental.
-    pub(super) axes: [Option<(f64, bool)>; 6],
-    /// PR and PA.
-    pub(super) polar: [Option<(f64, bool)>; 2],
-    pub(super) radius: Option<f64>,
-    /// `LEN` and `CCA` of `APPR` and `DEP`, in mm and degrees.
-    pub(super) length: Option<f64>,
-    pub(super) arc_angle: Option<f64>,
-    pub(super) counter_clockwise: Option<bool>,
-    pub(super) normal: [Option<f64>; 3],
-    pub(super) tool: [Option<f64>; 3],
-    pub(super) rapid: bool,
-    /// In machine coordinates (`M91`), or from a point that only the builder knows (`M92`).
-    pub(super) machine: Option<Datum>,
-    /// `M140 MB`: the way back along the tool, or all of it.
-    pub(super) retract: Option<Option<f64>>,
-    /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
-    pub(super) side: Option<Option<bool>>,
-}
-
-/// What coordinates of the machine are measured from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Datum {
-    Machine,
-    Builder,
-}
-
-const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
-
 impl Reader<'_> {
-    pub(super) fn words(&mut self, line: &Line) -> Result<MoveWords, Located> {
-        let mut words = MoveWords {
-            retract: (line.word(0) == "M140").then_some(None),
-            ..MoveWords::default()
-        };
-        let mut index = 1;
-        while index < line.tokens.len() {
-            let token = &line.tokens[index];
-            let mut text = token.text.clone();
-            index += 1;
-            // `F MAX`, `X +10`: a name and its value apart.
-            let next = line.word(index);
-            let letter_alone = text.len() <= 3
-                && text.bytes().all(|b| b.is_ascii_alphabetic())
-                && !matches!(text.as_str(), "RL" | "RR");
-            if letter_alone
-                && (next == "MAX"
-                    || next == "AUTO"
-                    || next.starts_with(|c: char| "+-".contains(c) || c.is_ascii_digit()))
-            {
-                text += next;
-                index += 1;
-            }
-            let here = |problem| (problem, token.span.clone());
-            let value = |reader: &Self, rest: &str| reader.parameters.value(rest).map_err(here);
-            let (relative, name) = line::relative(&text);
-            match name {
-                "R0" => words.side = Some(None),
-                "RL" => words.side = Some(Some(true)),
-                "RR" => words.side = Some(Some(false)),
-                "R+" | "R-" => {
-                    return Err(here(NcProblem::unsupported(
-                        format!("{name}: compensation along one axis is"),
-                        "expected RL, RR or R0",
-                    )));
-                }
-                "FMAX" => words.rapid = true,
-                "FAUTO" | "F" => {}
-                "M140" => words.retract = words.retract.or(Some(None)),
-                "MB" | "MBMAX" => words.retract = Some(None),
-                name if name.starts_with("MB") => words.retract = Some(Some(value(self, &name[2..])? * self.unit())),
-                name if name.starts_with("LEN") => {
-                    words.length = Some(value(self, &name[3..])? * self.unit());
-                }
-                name if name.starts_with("CCA") => words.arc_angle = Some(value(self, &name[3..])?),
-                "DR+" => words.counter_clockwise = Some(true),
-                "DR-" => words.counter_clockwise = Some(false),
-                _ => {
-                    let named = |prefix: &str| name.strip_prefix(prefix).filter(|rest| !rest.is_empty());
-                    let vector = ["NX", "NY", "NZ", "TX", "TY", "TZ"]
-                        .iter()
-                        .position(|prefix| named(prefix).is_some());
-                    let polar = ["PR", "PA"].iter().position(|prefix| named(prefix).is_some());
-                    let axis = AXES.iter().position(|prefix| named(prefix).is_some());
-                    if let Some(k) = vector {
-                        let value = value(self, &name[2..])?;
-                        let place = if k < 3 {
-                            &mut words.normal[k]
-                        } else {
-                            &mut words.tool[k - 3]
-                        };
-                        *place = Some(value);
-                    } else if let Some(k) = polar {
-                        let value = value(self, &name[2..])?;
-                        words.polar[k] = Some((if k == 0 { value * self.unit() } else { value }, relative));
-                    } else if let Some(k) = axis {
-                        if words.axes[k].is_some() {
-                            return Err(here(NcProblem::syntax(format!(
-                                "a second {} in one block: expected one",
-                                AXES[k]
-                            ))));
-                        }
-                        let value = value(self, &name[1..])?;
-                        words.axes[k] = Some((if k < 3 { value * self.unit() } else { value }, relative));
-                    } else if let Some(rest) = named("M") {
-                        words.machine = match rest {
-                            "91" => Some(Datum::Machine),
-                            "92" => Some(Datum::Builder),
-                            _ => words.machine,
-                        };
-                    } else if let Some(rest) = named("F") {
-                        self.track.feed = Some(value(self, rest)?);
-                    } else if let Some(rest) = named("R") {
-                        words.radius = Some(value(self, rest)? * self.unit());
-                    } else {
-                        return Err(here(NcProblem::syntax(format!(
-                            "{} in a move: expected axes, R0, F, M",
-                            token.text
-                        ))));
-                    }
-                }
-            }
-        }
-        Ok(words)
-    }
-
     pub(super) fn path(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         let kind = line.word(0);
@@ -147,7 +20,7 @@ impl Reader<'_> {
             return self.centre_block(&words).map_err(whole);
         }
         // Codes come into effect before the move: tip control, spindle.
-        let calls = self.codes(line)?;
+        let calls = self.codes(line)? || self.modes.calls_after_moves;
         let mut abc = self.track.abc;
         for k in 0..3 {
             if let Some((value, relative)) = words.axes[3 + k] {
@@ -211,16 +84,12 @@ impl Reader<'_> {
                 }
             }
             if calls {
-                self.call_cycle().map_err(whole)?;
+                self.call_cycle(line)?;
             }
             return Ok(());
         }
         let Some(target) = self.target(&words, kind, line)? else {
-            return if calls {
-                self.call_cycle().map_err(whole)
-            } else {
-                Ok(())
-            };
+            return if calls { self.call_cycle(line) } else { Ok(()) };
         };
         self.corner_ahead(words.rapid, abc)?;
         match kind {
@@ -228,7 +97,7 @@ impl Reader<'_> {
             _ => self.arc_block(kind, &words, target, abc).map_err(whole)?,
         }
         if calls {
-            self.call_cycle().map_err(whole)?;
+            self.call_cycle(line)?;
         }
         Ok(())
     }
@@ -279,9 +148,15 @@ impl Reader<'_> {
     fn target(&mut self, words: &MoveWords, kind: &str, line: &Line) -> Result<Option<[f64; 3]>, Located> {
         let whole = |problem| (problem, line.all());
         let cuts = !words.rapid;
-        let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP");
+        let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP" | "CTP");
         let [u, v, _] = self.modes.plane;
         self.track.use_offset(&mut self.frames.work).map_err(whole)?;
+        if self.frames.order_unknown && self.frames.transformed() {
+            let what = "the order of a shift or a plane that comes after a mirror, a rotation or a scale";
+            let taken = "the shift and the plane first, then the mirror, the rotation and the scale";
+            let settle = "cycles 8, 10, 11 and 26 after cycle 7 and PLANE";
+            self.track.assume(Assumption::new(what, taken, settle));
+        }
         let needed = |k: usize| {
             let relative = words.axes[k].is_some_and(|(_, relative)| relative);
             let given = words.axes[k].is_some() || polar && (k == u || k == v);
@@ -372,6 +247,13 @@ impl Reader<'_> {
 
     fn line_block(&mut self, words: &MoveWords, target: [f64; 3], abc: [f64; 3], line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
+        let oversized = self.modes.oversize != 0.0 || self.modes.corner_oversize != 0.0;
+        if oversized && words.normal.iter().any(Option::is_some) {
+            return Err(whole(NcProblem::unsupported(
+                "LN with surface normals and a tool with DR or DR2 is",
+                "expected DR+0 and DR2+0: the path of the tool itself",
+            )));
+        }
         if line.word(0) == "LN" && words.tool.iter().any(Option::is_some) {
             let vector = words.tool.map(|c| c.unwrap_or(0.0));
             if vector.iter().all(|c| c.abs() < SHORTEST) {
@@ -382,13 +264,6 @@ impl Reader<'_> {
             if !self.modes.tip_control {
                 return Err(whole(NcProblem::syntax(
                     "a tool vector without tip control: expected M128 or FUNCTION TCPM before it",
-                )));
-            }
-            let normal = words.normal.iter().any(Option::is_some);
-            if normal && self.modes.oversize != 0.0 {
-                return Err(whole(NcProblem::unsupported(
-                    "LN with surface normals and a tool with DR is",
-                    "expected DR+0: the path of the tool itself",
                 )));
             }
             let direction = self.track.frame().direction(vector);

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::{self, Line};
 use crate::machines::WorkFrame;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
@@ -15,6 +15,7 @@ pub(super) fn is_frame_cycle(number: u32) -> bool {
 
 impl Reader<'_> {
     fn apply_frames(&mut self) -> Result<(), NcProblem> {
+        self.frames.order_unknown &= self.frames.transformed();
         // Centres are of the old frame.
         self.modes.centre = None;
         self.track.set_frame(self.frames.total(self.modes.plane))
@@ -43,7 +44,9 @@ impl Reader<'_> {
                     } else {
                         &mut self.frames.shift[k]
                     };
-                    *shift = if relative { *shift + value } else { value };
+                    let before = *shift;
+                    *shift = if relative { before + value } else { value };
+                    self.frames.order_unknown |= *shift != before;
                 }
             }
             8 => {
@@ -221,11 +224,22 @@ impl Reader<'_> {
                     Vector3::zeros(),
                 ))
             }
+            "RELATIV" => {
+                let before = self.frames.tilt.unwrap_or_default();
+                let before = before.then(&WorkFrame::shifted(std::mem::take(&mut self.frames.tilted_shift)));
+                let names = ["SPA", "SPB", "SPC"];
+                let given = |name: &str| line.tokens.iter().any(|token| token.text.starts_with(name));
+                let mut angles = [0.0; 3];
+                for (angle, name) in angles.iter_mut().zip(names).filter(|(_, name)| given(name)) {
+                    *angle = named(self, name)?;
+                }
+                Some(before.then(&WorkFrame::spatial(angles)))
+            }
             "RESET" => None,
             word => {
                 let problem = NcProblem::unsupported(
                     format!("PLANE {word} is"),
-                    "expected PLANE SPATIAL, EULER, VECTOR or RESET",
+                    "expected PLANE SPATIAL, EULER, VECTOR, RELATIV or RESET",
                 );
                 return Err((problem, line.span(1)));
             }
@@ -234,6 +248,80 @@ impl Reader<'_> {
         let turns = has("TURN") || has("MOVE");
         // MOVE moves the linear axes too, by a distance that the machine knows.
         let turn = has("TURN").then(|| has("FMAX") || has("MAX"));
+        self.set_plane(tilt, turns, turn, line)
+    }
+
+    /// `CYCL DEF 19.1 A+0 B+30 C+0`: a plane by angles, without turning an axis.
+    ///
+    /// Source: *TNC 320, Cycle Programming* (340 55x-04), 11.9 Working plane: the angles are those of turns in the order A, B, C about the machine's axes, or of the rotary axes.
+    pub(super) fn working_plane(&mut self, part: &str, line: &Line) -> Result<(), Located> {
+        if matches!(part, "" | "0") {
+            return Ok(());
+        }
+        let mut angles = [0.0; 3];
+        for token in line.tokens.get(3..).unwrap_or(&[]) {
+            let Some(k) = ["A", "B", "C"].iter().position(|axis| token.text.starts_with(axis)) else {
+                continue;
+            };
+            // ABST is a distance.
+            if !token.text[1..].starts_with(|c: char| "+-.Q".contains(c) || c.is_ascii_digit()) {
+                continue;
+            }
+            let angle = self.parameters.value(&token.text[1..]);
+            angles[k] = angle.map_err(|problem| (problem, token.span.clone()))?;
+        }
+        let tilt = (angles != [0.0; 3]).then(|| WorkFrame::spatial(angles));
+        if tilt.is_some() {
+            let what = "whether the angles of cycle 19 are those of the plane or of the rotary axes";
+            let taken = "of the plane, turned about A, B and C in this order";
+            self.track.assume(Assumption::new(what, taken, "PLANE SPATIAL"));
+        }
+        self.set_plane(tilt, false, None, line)
+    }
+
+    /// `CYCL DEF 26.1 X1.5 Y0.9 CCX+10 CCY+5`: scales of the axes, about a point.
+    pub(super) fn scale_axes(&mut self, part: &str, line: &Line) -> Result<(), Located> {
+        if matches!(part, "" | "0") {
+            return Ok(());
+        }
+        for token in line.tokens.get(3..).unwrap_or(&[]) {
+            let here = |problem| (problem, token.span.clone());
+            let (centre, rest) = match token.text.strip_prefix("CC") {
+                Some(rest) => (true, rest),
+                None => (false, token.text.as_str()),
+            };
+            let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
+                let problem = format!("{} in cycle 26: expected such as X1.5 CCX+10", token.text);
+                return Err(here(NcProblem::syntax(problem)));
+            };
+            let value = self.parameters.value(&rest[1..]).map_err(here)?;
+            if centre {
+                self.frames.fixed[k] = value * self.unit();
+            } else if value > 0.0 && value < 100.0 {
+                self.frames.axis_scales[k] = value;
+            } else {
+                return Err(here(NcProblem::value("a scale", value, "above 0 and below 100")));
+            }
+        }
+        self.apply_frames().map_err(|problem| (problem, line.all()))
+    }
+
+    /// Tilts the plane, or ends that: `turns` the tool to it, by a move (`turn`: whether in rapid), or not.
+    fn set_plane(
+        &mut self,
+        tilt: Option<WorkFrame>,
+        turns: bool,
+        turn: Option<bool>,
+        line: &Line,
+    ) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        if self.frames.tilted_shift != [0.0; 3] {
+            let taken = "it ends with its plane";
+            let what = "a datum shift in a plane, where another plane comes or it is reset";
+            let settle = "cycle 7 with 0 before it";
+            self.track.assume(Assumption::new(what, taken, settle));
+        }
+        self.frames.order_unknown |= tilt.is_some();
         self.frames.tilted_shift = [0.0; 3];
         self.frames.tilt = tilt;
         let mut normal = [0.0, 0.0, 1.0];

@@ -1,7 +1,7 @@
 //! Tools, stock and M codes.
 
 use super::interpreter::Reader;
-use super::line::{self, Line};
+use super::language::line::{self, Line};
 use crate::drive::Coordinates;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::text::error::{Located, NcProblem};
@@ -39,7 +39,7 @@ impl Reader<'_> {
     /// `TOOL CALL 5 Z S3000 F500`, `TOOL CALL "MILL" Z S3000`, `TOOL CALL Z S3000`.
     pub(super) fn tool_call(&mut self, line: &Line) -> Result<(), Located> {
         let mut tool = None;
-        let (mut longer, mut larger) = (None, None);
+        let (mut longer, mut larger, mut rounder) = (None, None, 0.0);
         for (position, token) in line.tokens[2..].iter().enumerate() {
             let here = |problem| (problem, token.span.clone());
             let text = token.text.as_str();
@@ -70,9 +70,8 @@ impl Reader<'_> {
                 }
                 _ if text.starts_with('S') => self.modes.speed = Some(self.parameters.value(&text[1..]).map_err(here)?),
                 _ if text.starts_with('F') && text.len() > 1 => {
-                    if let Ok(feed) = self.parameters.value(&text[1..]) {
-                        self.track.feed = Some(feed);
-                    }
+                    self.feed_word(&text[1..]).map_err(here)?;
+                    self.modes.tool_feed = self.track.feed;
                 }
                 _ if text.starts_with("DL") || text.starts_with("DR") => {
                     let rest = text[2..].trim_start_matches(':').trim_start_matches('=');
@@ -83,7 +82,7 @@ impl Reader<'_> {
                     let rest = corner.map_or(rest, |rest| rest.trim_start_matches([':', '=']));
                     let value = self.parameters.value(rest).map_err(here)? * self.unit();
                     match (corner, text.starts_with("DL")) {
-                        (Some(_), _) => {}
+                        (Some(_), _) => rounder = value,
                         (None, true) => longer = Some(value),
                         (None, false) => larger = Some(value),
                     }
@@ -96,6 +95,8 @@ impl Reader<'_> {
             }
         }
         let whole = |problem| (problem, line.all());
+        // Another speed alone is in effect at once: it is said with the next codes, which may turn the spindle the other way.
+        self.modes.other_speed |= tool.is_none();
         self.track.change_tool(tool.filter(|tool| *tool > 0)).map_err(whole)?;
         // Q108 is the radius of the tool.
         if let Some(radius) = self.known_radius() {
@@ -107,6 +108,7 @@ impl Reader<'_> {
         }
         if tool.is_some() || larger.is_some() {
             self.modes.oversize = larger.unwrap_or(0.0);
+            self.modes.corner_oversize = rounder;
         }
         Ok(())
     }
@@ -142,23 +144,18 @@ impl Reader<'_> {
             };
             let rpm = self.modes.speed;
             match code {
-                0 | 1 => self.event(
-                    if code == 0 {
-                        EventKind::Stop
-                    } else {
-                        EventKind::OptionalStop
-                    },
-                    line,
-                )?,
+                0 => self.at_end.push(EventKind::Stop),
+                1 => self.at_end.push(EventKind::OptionalStop),
                 2 | 30 => self.ended = true,
                 3 | 13 => self.turn_spindle(Spindle::Clockwise { rpm }, line)?,
                 4 | 14 => self.turn_spindle(Spindle::CounterClockwise { rpm }, line)?,
-                5 => self.turn_spindle(Spindle::Stopped, line)?,
+                5 => self.at_end.push(EventKind::Spindle(Spindle::Stopped)),
                 6 | 19 => {}
                 7 => self.event(EventKind::Coolant(Coolant::Mist), line)?,
                 8 => self.event(EventKind::Coolant(Coolant::Flood), line)?,
-                9 => self.event(EventKind::Coolant(Coolant::Off), line)?,
-                99 => calls = true,
+                9 => self.at_end.push(EventKind::Coolant(Coolant::Off)),
+                89 => (calls, self.modes.calls_after_moves) = (true, true),
+                99 => (calls, self.modes.calls_after_moves) = (true, false),
                 126 => self.modes.shortest = true,
                 127 => self.modes.shortest = false,
                 128 => self.control(true).map_err(|problem| (problem, token.span.clone()))?,
@@ -167,20 +164,41 @@ impl Reader<'_> {
                     let reduced = self.track.abc.map(|angle| angle % 360.0);
                     self.track.abc = reduced;
                 }
-                89 | 97 | 98 | 101..=104 | 107 | 108 | 130 | 138 | 141 => {
+                103 => self.track.note("M103: the feed of plunging moves is that of others"),
+                136 | 137 => self.feeds_per_revolution(code == 136),
+                97 | 98 | 104 | 130 | 138 => {
                     let problem =
                         NcProblem::unsupported(format!("M{code} is"), "the path of the tool would be unknown");
                     return Err((problem, token.span.clone()));
                 }
                 // Machine coordinates are read with the move; others change no geometry.
-                90..=92 | 109..=118 | 120 | 124 | 134..=137 | 140 | 144 | 145 | 148 | 149 | 197 => {}
+                90..=92 | 101 | 102 | 107..=118 | 120 | 124 | 134 | 135 | 140 | 141 | 144 | 145 | 148 | 149 | 197 => {}
                 _ => self.track.note(format!("M{code} is not understood: ignored")),
             }
             if matches!(code, 13 | 14) {
                 self.event(EventKind::Coolant(Coolant::Flood), line)?;
             }
         }
+        if std::mem::take(&mut self.modes.other_speed) {
+            let rpm = self.modes.speed;
+            match self.modes.spindle {
+                Spindle::Clockwise { .. } => self.turn_spindle(Spindle::Clockwise { rpm }, line)?,
+                Spindle::CounterClockwise { .. } => self.turn_spindle(Spindle::CounterClockwise { rpm }, line)?,
+                _ => {}
+            }
+        }
         Ok(calls)
+    }
+
+    /// What the codes of a block do at its end: stops, M5 and M9.
+    pub(super) fn end_codes(&mut self, line: &Line) -> Result<(), Located> {
+        for event in std::mem::take(&mut self.at_end) {
+            match event {
+                EventKind::Spindle(spindle) => self.turn_spindle(spindle, line)?,
+                event => self.event(event, line)?,
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn turn_spindle(&mut self, spindle: Spindle, line: &Line) -> Result<(), Located> {
@@ -202,6 +220,11 @@ impl Reader<'_> {
         match (line.word(1), line.word(2)) {
             ("TCPM", _) => self.control(true).map_err(|problem| (problem, line.all()))?,
             ("RESET", "TCPM") => self.control(false).map_err(|problem| (problem, line.all()))?,
+            // X is a diameter there.
+            ("MODE", "TURN") => {
+                let problem = NcProblem::unsupported("FUNCTION MODE TURN is", "expected FUNCTION MODE MILL");
+                return Err((problem, line.all()));
+            }
             ("MODE" | "FEED" | "DWELL" | "S-PULSE" | "SPINDLE" | "TOUCHPROBE", _) => {}
             // Whether contours are those of the tool or of the part matters to paths in space alone.
             ("PROG", "PATH") => self

@@ -1,18 +1,50 @@
 //! Cycles that have been defined: the cycle that is called, and what cycles on contours share.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 
-use super::line::Line;
-use super::values::Parameters;
+use super::language::line::Line;
+use super::language::values::Parameters;
 use crate::drive::free::{Flat, Solved};
 use crate::drive::{Cycle, Pocket};
+use crate::model::event::Spindle;
 use crate::text::error::{Located, NcProblem};
+
+/// What stays in effect until another word changes it.
+#[derive(Default)]
+pub(super) struct Modes {
+    pub inch: bool,
+    pub plane: [usize; 3],
+    pub tip_control: bool,
+    pub shortest: bool,
+    /// The centre of CC, in the frame.
+    pub centre: Option<[f64; 2]>,
+    /// The side of the contour: RL.
+    pub compensated: Option<bool>,
+    /// The radii of TOOL DEF, in mm.
+    pub radii: BTreeMap<u32, f64>,
+    /// DR of TOOL CALL, in mm.
+    pub oversize: f64,
+    /// DR2 of TOOL CALL, in mm.
+    pub corner_oversize: f64,
+    /// The feed of TOOL CALL, for F AUTO.
+    pub tool_feed: Option<f64>,
+    /// M136: feeds per revolution.
+    pub per_revolution: bool,
+    /// M89: the cycle is called after each move.
+    pub calls_after_moves: bool,
+    pub speed: Option<f64>,
+    /// Whether the speed is another one than that at which the spindle was turned on.
+    pub other_speed: bool,
+    pub spindle: Spindle,
+}
 
 /// The cycle that `CYCL CALL` and `M99` call, and what cycles on contours share.
 #[derive(Default)]
 pub(super) struct Cycles {
     pub(super) cycle: Option<Cycle>,
+    /// The program of cycle 12, which is called instead.
+    pub(super) program: Option<String>,
     /// Its number and its block, which patterns take with other levels.
     pub(super) block: Option<(u32, Line)>,
     /// Where `CYCL CALL PAT` calls it.
@@ -81,6 +113,9 @@ pub(super) struct Defined<'a> {
     pub(super) line: &'a Line,
     pub(super) parameters: &'a Parameters,
     pub(super) unit: f64,
+    pub(super) feed_unit: f64,
+    pub(super) speed: Option<f64>,
+    pub(super) per_revolution: bool,
 }
 
 impl Defined<'_> {
@@ -103,6 +138,11 @@ impl Defined<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// A feed in the unit of the program.
+    pub fn feed(&self, parameter: u32) -> Result<Option<f64>, Located> {
+        Ok(self.find(parameter)?.map(|feed| feed * self.feed_unit))
     }
 
     /// A number, or 0.
@@ -143,4 +183,37 @@ impl Defined<'_> {
     pub fn fail(&self, problem: NcProblem) -> Located {
         (problem, self.line.all())
     }
+}
+
+/// A program, subprogram or repeated section on its way.
+pub(super) struct Level {
+    pub(super) routine: usize,
+    pub(super) next: usize,
+    pub(super) kind: LevelKind,
+    /// The parameters of its caller alone, which come back at its end.
+    pub(super) locals: Option<Vec<(String, f64)>>,
+}
+
+impl Level {
+    pub(super) fn new(routine: usize, next: usize, kind: LevelKind) -> Self {
+        let locals = None;
+        Self {
+            routine,
+            next,
+            kind,
+            locals,
+        }
+    }
+}
+
+pub(super) enum LevelKind {
+    Program,
+    /// Until LBL 0.
+    Subprogram,
+    /// From `from` to before `end`, this many more times.
+    Section {
+        from: usize,
+        end: usize,
+        times: usize,
+    },
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::cycles::{Arguments, CONTOURS, HOLES, MILLING, PATTERNS, UNCHECKED, hole_cycle, thread, workpiece};
 use super::interpreter::Reader;
 use super::language::expression::{Expression, Value};
+use super::language::structures::Call;
 use super::state::{Modal, Motion, Operation, PoleFrom};
 use super::words::{Action, Words};
 use crate::drive::{Coordinates, Corners, Cycle, UNKNOWN_TOOL};
@@ -41,7 +42,7 @@ impl Reader<'_> {
             54..=57 => return self.select_offset(value as u32 - 53),
             500 => return self.select_offset(0),
             505..=599 => return self.select_offset(value as u32 - 500),
-            70 | 700 => self.modes.inch = true,
+            code @ (70 | 700) => (self.modes.inch, self.modes.inch_feeds) = (true, code == 700),
             71 | 710 => self.modes.inch = false,
             code @ (74 | 75) => action.home = Some(code == 75),
             90 => self.modes.absolute = true,
@@ -124,7 +125,19 @@ impl Reader<'_> {
                         .note("a WORKPIECE other than a BOX with absolute sides (112) is left out");
                 }
             }
-            "CYCLE832" | "SETMS" | "STOPRE" => {}
+            "SETMS" => {
+                let number = self.values(arguments)?.into_iter().next().flatten();
+                self.modes.master = match number {
+                    Some(Value::Number(number)) => number as u32,
+                    _ => 1,
+                };
+            }
+            "DIAMON" | "DIAM90" => {
+                let taken = "no: a mill's X";
+                let what = format!("whether X is a diameter ({name})");
+                self.track.assume(Assumption::new(what, taken, "DIAMOF"));
+            }
+            "CYCLE832" | "STOPRE" => {}
             _ if HARMLESS.split(' ').any(|word| word == name) => {}
             _ if REFUSED.contains(&name) => {
                 let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
@@ -151,15 +164,11 @@ impl Reader<'_> {
         span: &Range<usize>,
     ) -> Result<(), Located> {
         let here = |problem: NcProblem| (problem, span.clone());
-        let (name, given, modal) = match name {
-            "CALL" | "PCALL" => {
-                return Err(here(NcProblem::unsupported(
-                    "CALL is",
-                    "expected the name of the subprogram alone",
-                )));
-            }
-            _ => (name, arguments, self.modal_word(span)),
+        let (name, given) = match self.named_call(name, arguments).map_err(here)? {
+            Some(called) => (called, None),
+            None => (name.to_owned(), arguments),
         };
+        let (name, modal) = (name.as_str(), self.modal_word(span));
         let values = self.values(given)?;
         let known = self.knows(name);
         let unit = self.modes.unit();
@@ -167,9 +176,13 @@ impl Reader<'_> {
             name,
             values: &values,
             unit,
+            speed: self.modes.speed,
         };
         if !known && UNCHECKED.contains(&name) {
             self.unchecked(name).map_err(here)?;
+        }
+        if !known && name != "CYCLE62" && CONTOURS.contains(&name) && cycle.is_unknown_kind() {
+            return self.track.leave_out_cycle(name).map_err(here);
         }
         if !known && CONTOURS.contains(&name) {
             self.track.use_offset(&mut self.frames.work).map_err(here)?;
@@ -182,7 +195,12 @@ impl Reader<'_> {
             }
             let arguments = cycle;
             let cycle = match name {
-                _ if HOLES.contains(&name) => Cycle::Holes(vec![hole_cycle(&arguments).map_err(here)?]),
+                _ if arguments.is_unknown_kind() => Cycle::Unknown(name.to_owned()),
+                _ if HOLES.contains(&name) => {
+                    let mut hole = hole_cycle(&arguments).map_err(here)?;
+                    hole.feed = hole.feed.or(self.tapping_feed(&arguments));
+                    Cycle::Holes(vec![hole])
+                }
                 "CYCLE70" | "CYCLE78" => {
                     let tool = self.cutter_radius(UNKNOWN_TOOL).map_err(here)?;
                     Cycle::Holes(thread(&arguments, tool).map_err(here)?)
@@ -194,7 +212,7 @@ impl Reader<'_> {
                 self.go_to_place(place, f64::NEG_INFINITY).map_err(here)?;
             }
             if modal {
-                self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
+                self.call_modally(Modal::Cycle(cycle));
                 return Ok(());
             }
             return self
@@ -214,16 +232,59 @@ impl Reader<'_> {
             .into_iter()
             .map(|value| value.unwrap_or(Value::Number(0.0)))
             .collect();
+        let times = if modal { 1.0 } else { words.plain("P").unwrap_or(1.0) };
+        let expected = "a whole number from 1 to 9999";
+        let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
+            .map_err(|problem| (problem, words.span("P")))?;
+        let call = Call {
+            name: name.to_owned(),
+            values,
+            variables: self.variables_among(given)?,
+            times: times as usize,
+            modally: modal,
+        };
         if modal {
-            self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
+            self.call_modally(Modal::Program(call));
         } else {
-            let times = words.plain("P").unwrap_or(1.0);
-            let expected = "a whole number from 1 to 9999";
-            let times = NcProblem::whole("the number of calls P", times, 1..=9999, expected)
-                .map_err(|problem| (problem, words.span("P")))?;
-            self.pending = Some((name.to_owned(), values, times as usize));
+            self.pending = Some(call);
         }
         Ok(())
+    }
+
+    /// The feed of `CYCLE84`, by its pitch in mm and its speed.
+    fn tapping_feed(&self, arguments: &Arguments) -> Option<f64> {
+        let metric = arguments.get(13).is_none_or(|unit| unit <= 1.0);
+        let pitch = arguments.get(8).filter(|pitch| *pitch != 0.0 && metric)?.abs();
+        let speed = arguments.get(10).filter(|speed| *speed > 0.0).or(self.modes.speed);
+        if arguments.name != "CYCLE84" {
+            return None;
+        }
+        let pitch = pitch / self.track.program.units.in_mm();
+        match self.track.feed_mode {
+            FeedMode::PerRevolution => Some(pitch),
+            FeedMode::PerMinute => Some(pitch * speed?),
+            FeedMode::InverseTime => None,
+        }
+    }
+
+    /// The program that `CALL` or `EXTCALL` names, wherever the control has it.
+    fn named_call(&self, name: &str, arguments: Option<&[Option<Expression>]>) -> Result<Option<String>, NcProblem> {
+        let text = match (name, arguments) {
+            ("CALL" | "EXTCALL", Some([Some(text)])) => text.value(&|name| self.lookup(name)),
+            ("CALL" | "EXTCALL" | "PCALL", _) => {
+                return Err(NcProblem::unsupported(
+                    format!("{name} is"),
+                    "expected the name of the subprogram alone",
+                ));
+            }
+            _ => return Ok(None),
+        };
+        let text = text.map_err(|(problem, _)| problem)?.text().to_ascii_uppercase();
+        let text = text.rsplit(['/', '\\', ':']).next().unwrap_or_default();
+        let text = text.trim_start_matches("_N_");
+        let ends = ["_SPF", "_MPF", ".SPF", ".MPF"];
+        let text = ends.iter().find_map(|end| text.strip_suffix(end)).unwrap_or(text);
+        Ok(Some(text.to_owned()))
     }
 
     /// Says that a cycle may be read wrongly.
@@ -251,12 +312,13 @@ impl Reader<'_> {
 }
 
 /// Keywords that change no programmed point.
-const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF SOFT BRISK DRIVE FFWON FFWOF DIAMOF DIAMON STOPRE \
+const HARMLESS: &str = "FNORM FLIN FCUB COMPOF COMPON COMPCURV COMPCAD COMPSURF SOFT BRISK DRIVE FFWON FFWOF DIAMOF STOPRE \
     ORIWKS ORIMKS ORIAXES ORIVECT ORIPLANE ORIROTA ORIC ORID ORISON ORISOF OSC OSD OSOF OSS OSSE UPATH SPATH \
     DISPLON DISPLOF SAVE SBLON SBLOF WALIMON WALIMOF STARTFIFO STOPFIFO FIFOCTRL CFC CFTCP CFIN CDON CDOF CDOF2 \
-    RTLION RTLIOF FENDNORM G1COMP OEMIPO1 SETMS TOWSTD CP EXECUTE PAROTOF TOROTOF";
+    RTLION RTLIOF FENDNORM G1COMP OEMIPO1 TOWSTD CP EXECUTE PAROTOF TOROTOF";
 /// Keywords that change the path.
-const REFUSED: [&str; 23] = [
+const REFUSED: [&str; 26] = [
     "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",
     "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON", "KONTC", "KONTT",
+    "ROTS", "AROTS", "CROTS",
 ];

@@ -5,6 +5,7 @@ use super::state::{FrameChange, Operation};
 use super::words::Words;
 use crate::drive::{Coordinates, WorkOffset};
 use crate::machines::WorkFrame;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -49,11 +50,21 @@ impl Reader<'_> {
             }
             FrameChange::Mirror => WorkFrame::scaled(values.map(|value| if value.is_some() { -1.0 } else { 1.0 })),
         };
+        let before = self.frames.programmed;
         self.frames.programmed = if operation.additive {
-            self.frames.programmed.then(&change)
+            if operation.kind == FrameChange::Turn && before.scale().is_none() {
+                let problem = "turning after a scale that is not the same for all axes is";
+                let expected = "the order on the control is not known; expected the scale after the turn";
+                return Err((NcProblem::unsupported(problem, expected), words.whole()));
+            }
+            before.then(&change)
         } else {
             change
         };
+        for k in 0..3 {
+            self.frames.kept[k] = self.frames.kept[k].or(self.track.xyz[k]);
+        }
+        self.frames.kept_turned |= operation.kind != FrameChange::Shift;
         self.apply_frames().map_err(|problem| (problem, words.whole()))
     }
 
@@ -94,6 +105,12 @@ impl Reader<'_> {
             [get(10), get(11), get(12)].map(|value| value * unit),
         ));
         let additive = get(2) % 10.0 == 1.0;
+        if additive && self.frames.programmed != WorkFrame::default() {
+            let taken = "it ends: the plane is upon the last swivelled plane alone";
+            let what = "the programmable frame before an additive CYCLE800";
+            self.track
+                .assume(Assumption::new(what, taken, "TRANS without words before it"));
+        }
         self.frames.swivel = if additive {
             self.frames.swivel.then(&frame)
         } else {

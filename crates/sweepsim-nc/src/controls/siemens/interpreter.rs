@@ -4,10 +4,11 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
+use super::language::cursor::changes_by_m6;
 use super::language::expression::{self, Expression, Value};
 use super::language::routine::{Routine, parts};
-use super::language::structures::{Item, Search, Statement};
-use super::state::{Contours, Frames, Modes};
+use super::language::structures::{Call, Item, Statement};
+use super::state::{Contours, Frames, Level, Modes, Section};
 use crate::controls::run::{self, BlockIndex, DEEPEST_CALL, Library, Running};
 use crate::drive::{Sense, Track};
 use crate::model::names::Format;
@@ -19,24 +20,6 @@ use crate::tools::comments;
 
 /// The most variables.
 pub(super) const MOST_VARIABLES: usize = 100_000;
-
-/// A part of a program that is repeated.
-pub(super) struct Section {
-    from: usize,
-    end: usize,
-    times: usize,
-    then: usize,
-}
-
-/// A program or subprogram on its way.
-pub(super) struct Level {
-    pub(super) routine: usize,
-    pub(super) next: usize,
-    pub(super) locals: BTreeMap<String, Value>,
-    pub(super) sections: Vec<Section>,
-    /// How often it starts again.
-    pub(super) times: usize,
-}
 
 pub(super) struct Reader<'a> {
     pub track: Track,
@@ -54,8 +37,10 @@ pub(super) struct Reader<'a> {
     /// Variables that the block has asked for, and nothing sets.
     pub(super) asked: RefCell<BTreeSet<String>>,
     pub(super) contours: Contours,
+    /// What a subprogram that has ended could not give back.
+    pub(super) broken: Option<NcProblem>,
     /// A call to make after the block.
-    pub pending: Option<(String, Vec<Value>, usize)>,
+    pub pending: Option<Call>,
 }
 
 pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
@@ -74,10 +59,11 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         ended: false,
         asked: RefCell::default(),
         contours: Contours::default(),
+        broken: None,
         pending: None,
     };
     reader.add(Rc::clone(text), 0);
-    reader.stack.push(Level::new(0, BTreeMap::new(), 1));
+    reader.stack.push(Level::new(0, 1));
     reader.track.describe_tools(text);
     run::run(&mut reader, text, options)?;
     let names = std::mem::take(&mut reader.modes.tools);
@@ -89,18 +75,6 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     comments::name_tools(&mut program, &names);
     program.stock = program.stock.or(comments.stock);
     Ok(program)
-}
-
-impl Level {
-    pub(super) fn new(routine: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
-        Self {
-            routine,
-            next: 0,
-            locals,
-            sections: Vec::new(),
-            times,
-        }
-    }
 }
 
 impl Running for Reader<'_> {
@@ -140,6 +114,9 @@ impl Running for Reader<'_> {
     }
 
     fn run(&mut self, (routine, index): BlockIndex) -> Result<(), Located> {
+        if let Some(problem) = self.broken.take() {
+            return Err((problem, self.whole((routine, index))));
+        }
         let result = self.line(routine, index);
         self.say_asked();
         result
@@ -162,6 +139,7 @@ impl Running for Reader<'_> {
 impl Reader<'_> {
     /// Adds the programs of a text. The first is the main one.
     pub(super) fn add(&mut self, text: Rc<String>, file: usize) {
+        self.modes.changes_by_m6 |= changes_by_m6(&text);
         let text = Rc::new(KeptText::new(text));
         for (name, lines) in parts(&text) {
             self.names.entry(name).or_insert(self.routines.len());
@@ -180,17 +158,15 @@ impl Reader<'_> {
             level.next = 0;
             return;
         }
-        self.stack.pop();
+        let ended = self.stack.pop();
         if self.stack.is_empty() {
             self.ended = true;
         } else {
             self.track.returns();
         }
-    }
-
-    /// How deep the current program is in calls.
-    pub fn depth(&self) -> usize {
-        self.stack.len()
+        if let Some(Err(problem)) = ended.map(|level| self.give_back(level)) {
+            self.broken = Some(problem);
+        }
     }
 
     /// The text of the block that runs now.
@@ -229,8 +205,8 @@ impl Reader<'_> {
             Statement::Block(items) => {
                 if !items.is_empty() {
                     self.block(items)?;
-                    if let Some((name, arguments, times)) = self.pending.take() {
-                        self.call(&name, arguments, times)
+                    if let Some(call) = self.pending.take() {
+                        self.call(call)
                             .map_err(|problem| (problem, self.whole((routine, index))))?;
                     }
                 }
@@ -297,18 +273,13 @@ impl Reader<'_> {
                 }
             }
             Statement::RepeatLabel { from, to, times, block } => {
-                let start = self.routines[routine].find(from, index, Search::Backward)?;
-                let end = match to {
-                    Some(to) => self.routines[routine].find(to, start, Search::Forward)? + 1,
-                    None if *block => start + 1,
-                    None => index,
-                };
+                let section = self.routines[routine].section(from, to.as_deref(), *block, index)?;
                 let times = times.as_ref().map_or(Ok(1.0), |times| self.number(times))?;
                 if !(times >= 0.0 && times.fract() == 0.0) {
                     let problem = NcProblem::value("the number of repeats P", times, "a whole number from 0 on");
                     return Err((problem, self.whole((routine, index))));
                 }
-                if times >= 1.0 && start < end {
+                if times >= 1.0 && !section.is_empty() {
                     self.track
                         .calls()
                         .map_err(|problem| (problem, self.whole((routine, index))))?;
@@ -318,26 +289,39 @@ impl Reader<'_> {
                             return Err((problem, self.whole((routine, index))));
                         }
                         level.sections.push(Section {
-                            from: start,
-                            end,
+                            from: section.start,
+                            end: section.end,
                             times: times as usize,
                             then: index + 1,
                         });
-                        level.next = start;
+                        level.next = section.start;
                     }
                 }
             }
-            Statement::Define(variables, text) => {
+            Statement::Case(value, cases, otherwise) => {
+                let value = value.value(&|name| self.lookup(name))?;
+                let mut to = otherwise.as_ref().map(|(search, label)| (*search, label));
+                for (constant, search, label) in cases {
+                    if constant.value(&|name| self.lookup(name))? == value {
+                        to = Some((*search, label));
+                        break;
+                    }
+                }
+                if let Some((search, label)) = to {
+                    let to = self.routines[routine].find(label, index, search)?;
+                    self.jump(to);
+                }
+            }
+            Statement::Define(variables, kind) => {
                 for (name, value) in variables {
                     let value = match value {
-                        Some(value) => value.value(&|name| self.lookup(name))?,
-                        None if *text => Value::Text(String::new()),
-                        None => Value::Number(0.0),
+                        Some(value) => kind.held(value.value(&|name| self.lookup(name))?),
+                        None => kind.nothing(),
                     };
                     if let Some(level) = self.stack.last_mut()
                         && level.locals.len() < MOST_VARIABLES
                     {
-                        level.locals.insert(name.clone(), value);
+                        level.define(name.clone(), value, *kind);
                     }
                 }
             }

@@ -3,9 +3,9 @@
 //! Read: `G0 G1 G2 G3` and `CIP` (centres `I J K`, also `AC(…)`; `CR=`, `AR=`, `TURN=`), `G17 G18 G19`, `G90 G91` with `AC IC DC ACP ACN`,
 //! `G70 G71 G700 G710`, work offsets (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153 G74 G75` (left out where the machine does not know the place), programmable frames
 //! (`TRANS ROT SCALE MIRROR` and those with `A`), `CYCLE800` axis by axis, `TRAORI`/`TRAFOOF`, tool vectors `A3= B3= C3=`, drilling cycles
-//! `CYCLE81`…`86`, `89`, `840` alone or after `MCALL`, patterns and milling cycles, cutter compensation (`G41 G42 G40`, `G450 G451`, `NORM KONT`, `OFFN`), `RND RNDM CHF CHR`,
-//! `CT`, polar coordinates (`G110 G111 G112`, `AP RP`), tools by number or name, `R` parameters, `DEF`, expressions, jumps, `IF WHILE FOR LOOP
-//! REPEAT`, and subprograms with parameters, by name from the same archive or from a file beside.
+//! `CYCLE81`…`89`, `840` alone or after `MCALL`, patterns and milling cycles, cutter compensation (`G41 G42 G40`, `G450 G451`, `NORM KONT`, `OFFN`), `RND RNDM CHF CHR`,
+//! `CT`, polar coordinates (`G110 G111 G112`, `AP RP`), tools by number or name, `R` parameters, `DEF`, expressions, jumps, `CASE IF WHILE FOR
+//! LOOP REPEAT`, and subprograms with parameters, by name from the same archive or from a file beside.
 //!
 //! Rotary axes turn the tool relative to the part by the right-hand rule, as their letters' convention has it, unless a machine is given.
 //! Splines, synchronous actions and other cycles are errors with their position.

@@ -1,13 +1,17 @@
 //! The moves of a block.
 
 use super::interpreter::Reader;
+use super::language::structures::Call;
 use super::state::{Modal, Motion};
-use super::words::{Action, Meaning, Word, Words};
+use super::words::{Action, Meaning, Word, Words, unknown_axis};
 use crate::machines::SHORTEST;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 pub(super) const LINEAR: [&str; 3] = ["X", "Y", "Z"];
 pub(super) const ROTARY: [&str; 3] = ["A", "B", "C"];
+/// The axes by the names of the machine.
+pub(super) const MACHINE_AXES: [&str; 3] = ["X1", "Y1", "Z1"];
 const VECTOR: [&str; 3] = ["A3", "B3", "C3"];
 
 impl Reader<'_> {
@@ -27,11 +31,23 @@ impl Reader<'_> {
                 let left = self.track.leave_out_program(&name, &format!("{name}.SPF"));
                 return left.map_err(|problem| (problem, word.span.clone()));
             }
-            self.pending = Some((
+            let modally = self.modal_word(&word.span);
+            let times = words.plain("P").unwrap_or(1.0).clamp(1.0, 9999.0) as usize;
+            let call = Call {
                 name,
-                Vec::new(),
-                words.plain("P").unwrap_or(1.0).clamp(1.0, 9999.0) as usize,
-            ));
+                values: Vec::new(),
+                variables: Vec::new(),
+                times,
+                modally,
+            };
+            if modally {
+                self.call_modally(Modal::Program(call));
+            } else {
+                self.pending = Some(call);
+            }
+        }
+        if let Some(word) = words.any(&MACHINE_AXES).filter(|_| action.home.is_none()) {
+            return Err((unknown_axis(&word.name), word.span.clone()));
         }
         let moves = |names: [&str; 3]| names.map(|name| words.get(name).is_some());
         let linear = moves(LINEAR);
@@ -63,8 +79,14 @@ impl Reader<'_> {
             return self.go_in_machine_coordinates(words, abc);
         }
         if self.without_length() {
-            self.track
-                .note("moves without the tool's length (D0) are left out: the path breaks here");
+            if self.modes.motion == Motion::Rapid {
+                self.track
+                    .note("moves without the tool's length (D0) are left out: the path breaks here");
+            } else {
+                let taken = "left out: the path breaks there";
+                let what = "where feed moves without the tool's length (D0) go";
+                self.track.assume(Assumption::new(what, taken, "D1 before them"));
+            }
             self.track.turn_unknown(abc).map_err(here)?;
             self.track.leave(linear);
             return Ok(());
@@ -114,12 +136,12 @@ impl Reader<'_> {
         }
         if linear.contains(&true) || polar || rotary {
             match self.modes.modal_call.clone() {
-                Some((depth, _)) if depth != self.depth() => {}
-                Some((_, Modal::Cycle(cycle))) => self
+                _ if self.stack.iter().any(|level| level.called_modally) => {}
+                Some(Modal::Cycle(cycle)) => self
                     .track
                     .cycle_here(&cycle, self.modes.plane, self.uncertain)
                     .map_err(here)?,
-                Some((_, Modal::Program(name, values))) => self.pending = Some((name, values, 1)),
+                Some(Modal::Program(call)) => self.pending = Some(call),
                 None => {}
             }
         }
@@ -194,8 +216,16 @@ impl Reader<'_> {
             if polar[k].is_some() {
                 xyz[k] = polar[k];
             }
+            let kept = self.frames.kept[k].filter(|_| word.is_some() || polar[k].is_some());
+            if kept.is_some() {
+                self.frames.kept[k] = None;
+                self.frames.kept_turned &= self.frames.kept.iter().any(Option::is_some);
+            }
             if let Some(word) = word {
                 let value = word.value * self.modes.unit();
+                if let (true, Some(before)) = (relative, kept) {
+                    xyz[k] = self.after_frame(before, xyz[k]);
+                }
                 xyz[k] = if relative {
                     xyz[k].map(|now| now + value)
                 } else {
@@ -221,6 +251,22 @@ impl Reader<'_> {
         }
         self.track.xyz = xyz;
         Ok(None)
+    }
+
+    /// From where an incremental word counts that is the first of its axis after a change of the frame.
+    fn after_frame(&mut self, before: f64, here: Option<f64>) -> Option<f64> {
+        if here.is_none_or(|here| (here - before).abs() < 1e-9) {
+            return here;
+        }
+        let turned = self.frames.kept_turned;
+        let taken = match turned {
+            true => "no: they go as far as they say",
+            false => "yes, as controls are delivered ($SC_FRAME_OFFSET_INCR_PROG)",
+        };
+        let what = "whether incremental moves after another frame go by its offset too";
+        let settle = "an absolute move of the axis after the frame";
+        self.track.assume(Assumption::new(what, taken, settle));
+        if turned { here } else { Some(before) }
     }
 
     pub(super) fn relative(&self, word: &Word) -> bool {

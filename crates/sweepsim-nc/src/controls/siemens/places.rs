@@ -3,13 +3,10 @@
 use std::ops::Range;
 
 use super::interpreter::Reader;
-use super::moves::{LINEAR, ROTARY};
+use super::moves::{LINEAR, MACHINE_AXES, ROTARY};
 use super::state::Motion;
 use super::words::{Action, Words};
 use crate::text::error::{Located, NcProblem};
-
-/// The axes by the names of the machine.
-const MACHINE_AXES: [&str; 3] = ["X1", "Y1", "Z1"];
 
 /// That of the first word of an axis.
 fn axes_span(words: &Words) -> Range<usize> {

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::language::expression::Value;
+use super::language::structures::{Call, VariableKind};
 use crate::drive::{Corners, Cycle, WorkOffset, WorkOffsets};
 use crate::machines::WorkFrame;
 use crate::model::event::Spindle;
+use crate::model::program::FeedMode;
 use crate::model::read_options::ReadOptions;
 
 /// How the tool moves, until another word says otherwise.
@@ -31,13 +33,19 @@ pub(super) struct Modes {
     pub plane: [usize; 3],
     pub absolute: bool,
     pub(super) inch: bool,
+    /// G700: feeds too.
+    pub(super) inch_feeds: bool,
+    /// The number of the master spindle.
+    pub(super) master: u32,
     pub tip_control: bool,
     /// `G60`: the axes rest after each block.
     pub exact_stop: bool,
     /// `D0`: without the tool's length.
     pub(super) without_length: bool,
-    /// A cycle or subprogram at each position of the program at this depth.
-    pub modal_call: Option<(usize, Modal)>,
+    /// A cycle or subprogram at each position.
+    pub modal_call: Option<Modal>,
+    /// How deep in calls the program is that has made it modal.
+    pub(super) modal_depth: usize,
     /// The tool's edge (`D`).
     pub edge: u32,
     /// An allowance of compensated contours (`OFFN`), in mm.
@@ -58,14 +66,29 @@ pub(super) struct Modes {
     pub(super) speed: Option<f64>,
     pub(super) selected: Option<u32>,
     pub(super) tools: BTreeMap<String, u32>,
-    pub(super) uses_m6: bool,
+    /// Whether the program changes tools by M6: else T does.
+    pub(super) changes_by_m6: bool,
 }
 
 /// What `MCALL` calls.
 #[derive(Clone, Debug)]
 pub(super) enum Modal {
     Cycle(Cycle),
-    Program(String, Vec<Value>),
+    Program(Call),
+}
+
+/// What a subprogram with `SAVE` gives back: the G codes of all groups, and the programmable frame.
+pub(super) struct SavedModes {
+    pub(super) motion: Motion,
+    pub(super) plane: [usize; 3],
+    pub(super) absolute: bool,
+    pub(super) inch: bool,
+    pub(super) exact_stop: bool,
+    pub(super) corners: Corners,
+    pub(super) round_ends: bool,
+    pub(super) feed_mode: FeedMode,
+    pub(super) offset: WorkOffset,
+    pub(super) programmed: WorkFrame,
 }
 
 impl Modes {
@@ -74,6 +97,8 @@ impl Modes {
             plane: [0, 1, 2],
             absolute: true,
             inch: options.inch,
+            inch_feeds: options.inch,
+            master: 1,
             tip_control: options.machine.tip_control,
             edge: 1,
             ..Self::default()
@@ -115,6 +140,9 @@ pub(super) struct Frames {
     pub swivelled: bool,
     /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
     pub programmed: WorkFrame,
+    /// What the program has given before the frame changed, until it gives the axis again; and whether it did not only shift.
+    pub kept: [Option<f64>; 3],
+    pub kept_turned: bool,
 }
 
 impl Frames {
@@ -124,6 +152,8 @@ impl Frames {
             swivel: WorkFrame::default(),
             swivelled: false,
             programmed: WorkFrame::default(),
+            kept: [None; 3],
+            kept_turned: false,
         }
     }
 }
@@ -174,4 +204,62 @@ pub(super) struct Contours {
 pub(super) struct NamedContour {
     pub program: Option<String>,
     pub labels: Option<[String; 2]>,
+}
+
+/// A part of a program that is repeated.
+pub(super) struct Section {
+    pub(super) from: usize,
+    pub(super) end: usize,
+    pub(super) times: usize,
+    pub(super) then: usize,
+}
+
+/// A program or subprogram on its way.
+pub(super) struct Level {
+    pub(super) routine: usize,
+    pub(super) next: usize,
+    pub(super) locals: BTreeMap<String, Value>,
+    /// What locals hold, if it is not any number or text.
+    kinds: BTreeMap<String, VariableKind>,
+    /// Parameters that the caller's variables get at its end.
+    pub(super) returned: Vec<(String, String)>,
+    /// The caller's modes that come back at its end.
+    pub(super) saved: Option<Box<SavedModes>>,
+    /// Whether it is what a modal call calls, or a contour: moves in it call nothing.
+    pub(super) called_modally: bool,
+    pub(super) sections: Vec<Section>,
+    /// How often it starts again.
+    pub(super) times: usize,
+}
+
+impl Level {
+    pub(super) fn new(routine: usize, times: usize) -> Self {
+        Self {
+            routine,
+            next: 0,
+            locals: BTreeMap::new(),
+            kinds: BTreeMap::new(),
+            returned: Vec::new(),
+            saved: None,
+            called_modally: false,
+            sections: Vec::new(),
+            times,
+        }
+    }
+
+    pub(super) fn define(&mut self, name: String, value: Value, kind: VariableKind) {
+        if kind != VariableKind::Real {
+            self.kinds.insert(name.clone(), kind);
+        }
+        self.locals.insert(name, value);
+    }
+
+    /// A value as a local, or an element of a local array, holds it.
+    pub(super) fn held(&self, name: &str, value: Value) -> Value {
+        let array = name.split_once('[').map_or(name, |(array, _)| array);
+        match self.kinds.get(array) {
+            Some(kind) => kind.held(value),
+            None => value,
+        }
+    }
 }

@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
-use super::interpreter::{Level, MOST_VARIABLES, Reader};
-use super::language::expression::{self, Expression, Value};
-use super::language::structures::Item;
+use super::interpreter::{MOST_VARIABLES, Reader};
+use super::language::expression::{self, Expression, Kind, Value};
+use super::language::structures::{Call, Item};
+use super::state::{Level, Modal, Modes, SavedModes};
 use crate::controls::run::DEEPEST_CALL;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
@@ -72,6 +73,11 @@ impl Reader<'_> {
         Ok(self.without_value(name))
     }
 
+    /// Whether a variable of this name has been defined, or has a value.
+    pub(super) fn is_variable(&self, name: &str) -> bool {
+        self.stack.iter().any(|level| level.locals.contains_key(name)) || self.globals.contains_key(name)
+    }
+
     /// What nothing sets, or only the control knows, is 0: it is said after the block.
     fn without_value(&self, name: &str) -> Value {
         self.asked.borrow_mut().insert(name.to_owned());
@@ -113,9 +119,12 @@ impl Reader<'_> {
         let known = |level: &Level| {
             level.locals.contains_key(&name) || array.as_ref().is_some_and(|array| level.locals.contains_key(array))
         };
-        let place = match self.stack.iter_mut().rev().find(|level| known(level)) {
-            Some(level) => &mut level.locals,
-            None => &mut self.globals,
+        let (place, value) = match self.stack.iter_mut().rev().find(|level| known(level)) {
+            Some(level) => {
+                let value = level.held(&name, value);
+                (&mut level.locals, value)
+            }
+            None => (&mut self.globals, value),
         };
         if place.len() >= MOST_VARIABLES && !place.contains_key(&name) {
             return Err(NcProblem::value("the number of variables", MOST_VARIABLES, "smaller"));
@@ -138,22 +147,98 @@ impl Reader<'_> {
         true
     }
 
-    pub(super) fn call(&mut self, name: &str, arguments: Vec<Value>, times: usize) -> Result<(), NcProblem> {
-        let Some(&routine) = self.names.get(name) else {
+    pub(super) fn call(&mut self, call: Call) -> Result<(), NcProblem> {
+        let Some(&routine) = self.names.get(&call.name) else {
             return Ok(());
         };
         if self.stack.len() > DEEPEST_CALL {
             return Err(NcProblem::syntax(format!(
-                "{name} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels"
+                "{} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels",
+                call.name
             )));
         }
-        let mut values = arguments.into_iter();
-        let locals = self.routines[routine].parameters.iter().cloned();
-        let locals = locals
-            .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
-            .collect();
+        let mut level = Level::new(routine, call.times);
+        level.called_modally = call.modally;
+        let head = &self.routines[routine].head;
+        let (mut values, mut variables) = (call.values.into_iter(), call.variables.into_iter());
+        for parameter in &head.parameters {
+            let value = values.next().unwrap_or_else(|| parameter.kind.nothing());
+            let value = parameter.kind.held(value);
+            level.define(parameter.name.clone(), value, parameter.kind);
+            if let Some(Some(variable)) = variables.next().filter(|_| parameter.by_reference) {
+                level.returned.push((parameter.name.clone(), variable));
+            }
+        }
+        level.saved = head.saves.then(|| Box::new(self.saved_modes()));
         self.track.calls()?;
-        self.stack.push(Level::new(routine, locals, times));
+        self.stack.push(level);
         Ok(())
+    }
+
+    /// `MCALL` with a cycle or a subprogram.
+    pub(super) fn call_modally(&mut self, modal: Modal) {
+        self.modes.modal_call = Some(modal);
+        self.modes.modal_depth = self.stack.len();
+    }
+
+    /// What the caller has of a program that has ended: the values of its parameters by reference, and the modes before it.
+    pub(super) fn give_back(&mut self, level: Level) -> Result<(), NcProblem> {
+        if self.modes.modal_depth > self.stack.len() && !self.stack.is_empty() && self.modes.modal_call.take().is_some()
+        {
+            let taken = "no: it ends with it";
+            let what = "whether a modal call goes on after the subprogram that has made it";
+            self.track.assume(Assumption::new(what, taken, "MCALL at its end"));
+        }
+        for (parameter, variable) in level.returned {
+            if let Some(value) = level.locals.get(&parameter).cloned() {
+                self.assign(variable, value)?;
+            }
+        }
+        level.saved.map_or(Ok(()), |saved| self.restore_modes(*saved))
+    }
+
+    /// The arguments that are variables, by their names with indices.
+    pub(super) fn variables_among(
+        &self,
+        arguments: Option<&[Option<Expression>]>,
+    ) -> Result<Vec<Option<String>>, Located> {
+        let key = |argument: &Expression| match &argument.kind {
+            Kind::Variable(name, indices) => expression::key(name, indices, &|name| self.lookup(name)).map(Some),
+            _ => Ok(None),
+        };
+        let all = arguments.unwrap_or(&[]).iter();
+        all.map(|argument| argument.as_ref().map_or(Ok(None), key)).collect()
+    }
+
+    pub(super) fn saved_modes(&self) -> SavedModes {
+        SavedModes {
+            motion: self.modes.motion,
+            plane: self.modes.plane,
+            absolute: self.modes.absolute,
+            inch: self.modes.inch,
+            exact_stop: self.modes.exact_stop,
+            corners: self.modes.corners,
+            round_ends: self.modes.round_ends,
+            feed_mode: self.track.feed_mode,
+            offset: self.frames.work.active,
+            programmed: self.frames.programmed,
+        }
+    }
+
+    pub(super) fn restore_modes(&mut self, saved: SavedModes) -> Result<(), NcProblem> {
+        self.modes = Modes {
+            motion: saved.motion,
+            plane: saved.plane,
+            absolute: saved.absolute,
+            inch: saved.inch,
+            exact_stop: saved.exact_stop,
+            corners: saved.corners,
+            round_ends: saved.round_ends,
+            ..std::mem::take(&mut self.modes)
+        };
+        self.track.feed_mode = saved.feed_mode;
+        self.frames.work.active = saved.offset;
+        self.frames.programmed = saved.programmed;
+        self.apply_frames()
     }
 }

@@ -9,6 +9,7 @@ use super::state::{Operation, PoleFrom};
 use crate::drive::CornerShape;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Units};
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// How a value is meant.
@@ -83,6 +84,26 @@ pub(super) struct Action {
     /// The corner at the end of the move, with its word, and its feed.
     pub corner: Option<(&'static str, CornerShape)>,
     pub corner_feed: Option<f64>,
+    /// Stops after the move: M0 and M1.
+    pub stops: Vec<(EventKind, Range<usize>)>,
+}
+
+/// The number of the spindle of `S1=` or `M1=`.
+fn spindle(name: &str) -> Option<u32> {
+    let digits = name.strip_prefix(['S', 'M'])?;
+    (digits.len() == 1).then(|| digits.parse().ok()).flatten()
+}
+
+/// Whether a name that gets a value may be that of an axis: a letter with a digit, as C1.
+fn is_axis(name: &str) -> bool {
+    matches!(name.as_bytes(), [letter, digit] if letter.is_ascii_uppercase() && *letter != b'R' && digit.is_ascii_digit())
+}
+
+pub(super) fn unknown_axis(name: &str) -> NcProblem {
+    NcProblem::unsupported(
+        format!("{name}= is"),
+        "it may be an axis; expected X, Y, Z, A, B or C, or DEF before it",
+    )
 }
 
 impl Reader<'_> {
@@ -105,6 +126,10 @@ impl Reader<'_> {
                         self.modes.allowance = allowance * self.modes.unit();
                         continue;
                     }
+                    if let ("FZ", Value::Number(feed)) = (name.as_str(), &value) {
+                        self.feed_per_tooth(*feed);
+                        continue;
+                    }
                     if let ("FP", Value::Number(number)) = (name.as_str(), &value) {
                         action.fixed_point = Some(*number);
                         continue;
@@ -115,13 +140,19 @@ impl Reader<'_> {
                     ) {
                         continue;
                     }
-                    if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC") {
-                        let problem = NcProblem::unsupported(format!("{name} is"), "expected axes by their letters");
+                    if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC" | "AX" | "IP" | "G") {
+                        let problem = NcProblem::unsupported(
+                            format!("{name} is"),
+                            "expected axes by their letters, and G with its number",
+                        );
                         return Err((problem, span.clone()));
+                    }
+                    if indices.is_empty() && is_axis(name) && !self.is_variable(name) {
+                        return Err((unknown_axis(name), span.clone()));
                     }
                     self.assign(key, value).map_err(|problem| (problem, span.clone()))?;
                 }
-                Item::Word { name, value, span } => match (name.as_str(), self.value_of(value)?) {
+                Item::Word { name, value, span } => match (self.of_master(name), self.value_of(value)?) {
                     ("T", (Value::Text(text), _)) => tool_name = Some((text, span.clone())),
                     (_, (Value::Text(text), _)) => {
                         let problem = NcProblem::value(format!("the word {name}"), format!("{text:?}"), "a number");
@@ -158,6 +189,10 @@ impl Reader<'_> {
             self.select(number).map_err(|problem| (problem, span))?;
         }
         let ends = self.settings(&words, &mut action)?;
+        let modal_feed = self.track.feed;
+        if let Some(feed) = words.plain("FB") {
+            self.track.feed = Some(self.feed(feed));
+        }
         if let Some((operation, _)) = action.operation {
             self.operate(operation, &words)?;
         } else if action.dwell {
@@ -169,6 +204,10 @@ impl Reader<'_> {
             self.event(EventKind::Dwell { seconds }, words.whole())?;
         } else if !action.other {
             self.moves(&words, &action)?;
+        }
+        self.track.feed = modal_feed;
+        for (kind, span) in action.stops {
+            self.event(kind, span)?;
         }
         if ends {
             self.back();
@@ -182,6 +221,19 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// `S1=` and `M1=` of the master spindle are S and M; those of others are ignored.
+    fn of_master<'a>(&mut self, name: &'a str) -> &'a str {
+        match spindle(name) {
+            Some(number) if number == self.modes.master => &name[..1],
+            Some(_) => {
+                self.track
+                    .note(format!("{name}=, of another spindle than the master, is ignored"));
+                name
+            }
+            None => name,
+        }
     }
 
     /// The value of a word, and how it is meant.
@@ -218,13 +270,52 @@ impl Reader<'_> {
         number
     }
 
+    /// Another tool comes into the spindle, with its first edge, as machines are delivered.
+    fn insert(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
+        if tool.is_some() && tool != self.track.tool {
+            self.select_edge(1.0);
+        }
+        self.track.change_tool(tool)
+    }
+
+    fn select_edge(&mut self, edge: f64) {
+        self.modes.without_length = edge == 0.0;
+        self.modes.edge = edge as u32;
+    }
+
     fn select(&mut self, number: u32) -> Result<(), NcProblem> {
         self.modes.selected = Some(number);
-        // Programs without a tool change name their tool by T alone.
-        if self.track.tool.is_none() && number > 0 && !self.modes.uses_m6 {
-            self.track.change_tool(Some(number))?;
+        // Programs without M6 change their tools by T alone; so does the first T of others, which may lie in the spindle.
+        let first = self.track.tool.is_none();
+        if number == 0 || !first && self.modes.changes_by_m6 {
+            return Ok(());
         }
+        if !first && self.track.tool != Some(number) {
+            let taken = "at once: the program has no M6";
+            let what = "when T changes the tool";
+            self.track.assume(Assumption::new(what, taken, "M6 where it changes"));
+        }
+        self.insert(Some(number))?;
         Ok(())
+    }
+
+    /// `FZ=`, in `G95`.
+    fn feed_per_tooth(&mut self, feed: f64) {
+        let taken = "one: the feed per tooth is that per revolution";
+        let what = "the number of teeth, for FZ";
+        self.track.assume(Assumption::new(what, taken, "F in G95").harmless());
+        self.track.feed_mode = FeedMode::PerRevolution;
+        self.track.feed = Some(self.feed(feed));
+    }
+
+    /// A feed in the unit of the program.
+    fn feed(&self, feed: f64) -> f64 {
+        match self.track.feed_mode {
+            FeedMode::InverseTime => feed,
+            FeedMode::PerMinute | FeedMode::PerRevolution => {
+                feed * (self.modes.unit() / self.track.program.units.in_mm())
+            }
+        }
     }
 
     /// F, S, T, D and M words. Whether the program ends.
@@ -235,21 +326,20 @@ impl Reader<'_> {
         if !action.dwell
             && let Some(feed) = words.plain("F")
         {
-            self.track.feed = Some(match self.track.feed_mode {
-                FeedMode::InverseTime => feed,
-                FeedMode::PerMinute | FeedMode::PerRevolution => {
-                    feed * (self.modes.unit() / self.track.program.units.in_mm())
-                }
-            });
-        }
-        if let Some(offset) = words.plain("D") {
-            self.modes.without_length = offset == 0.0;
-            self.modes.edge = offset as u32;
+            self.track.feed = Some(self.feed(feed));
+            if self.modes.inch && !self.modes.inch_feeds && self.track.feed_mode != FeedMode::InverseTime {
+                let taken = "inches, as on a control whose own unit that is";
+                let what = "the unit of feeds after G70";
+                self.track.assume(Assumption::new(what, taken, "G700").harmless());
+            }
         }
         if let Some(word) = words.get("T") {
             NcProblem::whole("a tool number", word.value, 0..=u32::MAX, "a whole number")
                 .and_then(|tool| self.select(tool))
                 .map_err(|problem| (problem, word.span.clone()))?;
+        }
+        if let Some(offset) = words.plain("D") {
+            self.select_edge(offset);
         }
         self.corner_words(words, action)?;
         if let Some(speed) = words.get("S").filter(|_| !action.dwell) {
@@ -260,20 +350,20 @@ impl Reader<'_> {
         for word in words.0.iter().filter(|word| word.name == "M") {
             let rpm = self.modes.speed;
             match word.value {
-                0.0 => self.event(EventKind::Stop, word.span.clone())?,
-                1.0 => self.event(EventKind::OptionalStop, word.span.clone())?,
+                0.0 => action.stops.push((EventKind::Stop, word.span.clone())),
+                1.0 => action.stops.push((EventKind::OptionalStop, word.span.clone())),
                 2.0 | 17.0 | 30.0 => ends = true,
                 3.0 => spindle = Some(Spindle::Clockwise { rpm }),
                 4.0 => spindle = Some(Spindle::CounterClockwise { rpm }),
                 5.0 => spindle = Some(Spindle::Stopped),
                 19.0 => {}
                 6.0 => {
-                    self.modes.uses_m6 = true;
                     action.tool_change = true;
                     let tool = self.modes.selected.filter(|tool| *tool > 0);
-                    self.track
-                        .change_tool(tool)
-                        .map_err(|problem| (problem, word.span.clone()))?;
+                    self.insert(tool).map_err(|problem| (problem, word.span.clone()))?;
+                    if let Some(edge) = words.plain("D") {
+                        self.select_edge(edge);
+                    }
                 }
                 7.0 => self.event(EventKind::Coolant(Coolant::Mist), word.span.clone())?,
                 8.0 => self.event(EventKind::Coolant(Coolant::Flood), word.span.clone())?,

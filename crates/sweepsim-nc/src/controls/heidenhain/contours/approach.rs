@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
-use crate::controls::heidenhain::moves::MoveWords;
+use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::CircularArc;
 use crate::text::error::{Located, NcProblem};
 
@@ -236,7 +236,8 @@ impl Reader<'_> {
     /// The direction in which the contour goes on from a point, by the block that follows.
     fn way_after(&mut self, from: Flat) -> Option<Flat> {
         let [u, v, _] = self.modes.plane;
-        let before = (self.track.feed, self.modes.centre);
+        let before = (self.track.feed, self.track.feed_mode, self.modes.centre);
+        let per_revolution = self.modes.per_revolution;
         let mut skipped = 0;
         let mut centre = self.modes.centre;
         loop {
@@ -248,7 +249,8 @@ impl Reader<'_> {
                 "L" | "C" | "CR" | "CC" => self.words(&line).ok()?,
                 _ => return None,
             };
-            (self.track.feed, self.modes.centre) = before;
+            (self.track.feed, self.track.feed_mode, self.modes.centre) = before;
+            self.modes.per_revolution = per_revolution;
             let at = |k: usize, from: f64| match words.axes[k] {
                 Some((value, true)) => from + value,
                 Some((value, false)) => value,

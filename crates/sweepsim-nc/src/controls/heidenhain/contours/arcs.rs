@@ -4,14 +4,14 @@ use std::f64::consts::TAU;
 
 use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
-use crate::controls::heidenhain::moves::MoveWords;
+use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::{CircularArc, Corner, CornerShape, ProgramPlace};
 use crate::text::error::{Located, NcProblem};
 
 /// Whether a block moves along the contour.
 fn is_contour(word: &str) -> bool {
-    matches!(word, "L" | "LP" | "C" | "CP" | "CR" | "CT") || is_free(word)
+    matches!(word, "L" | "LP" | "C" | "CP" | "CR" | "CT" | "CTP") || is_free(word)
 }
 
 impl Reader<'_> {
@@ -56,13 +56,11 @@ impl Reader<'_> {
         let mut feed = None;
         for token in line.tokens.iter().skip(2) {
             match token.text.strip_prefix('F') {
-                Some("AUTO" | "") => {}
+                Some("AUTO") => feed = self.modes.tool_feed,
+                Some("") => {}
                 Some(value) => {
-                    feed = Some(
-                        self.parameters
-                            .value(value)
-                            .map_err(|problem| (problem, token.span.clone()))?,
-                    );
+                    let value = self.parameters.value(value);
+                    feed = Some(value.map_err(|problem| (problem, token.span.clone()))? * self.feed_unit());
                 }
                 None if token.text.starts_with('M') || token.text.parse::<f64>().is_ok() => {}
                 None => {

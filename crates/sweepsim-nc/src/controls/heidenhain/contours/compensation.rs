@@ -1,7 +1,7 @@
 //! Cutter compensation.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::moves::MoveWords;
+use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::{CompensationSettings, Corners, DiameterAsked};
 use crate::text::error::NcProblem;
 

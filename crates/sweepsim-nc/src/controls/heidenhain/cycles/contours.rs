@@ -3,8 +3,9 @@
 //! Source: *TNC 620, Cycle Programming* (340 56x-02), 7.1 to 7.9. A contour is a pocket or an island by the side on which its subprogram has the tool, and the way around.
 
 use crate::controls::contour;
-use crate::controls::heidenhain::interpreter::{Level, LevelKind, Reader};
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::interpreter::Reader;
+use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::state::{Level, LevelKind};
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
 
@@ -55,8 +56,8 @@ impl Reader<'_> {
             tool,
             step: tool * self.cycles.contours.overlap,
             infeed: defined.span(10)?.abs(),
-            plunge: defined.find(11)?,
-            feed: defined.find(12)?,
+            plunge: defined.feed(11)?,
+            feed: defined.feed(12)?,
             left: match number {
                 22 => [side, floor],
                 23 => [side, 0.0],
@@ -108,11 +109,7 @@ impl Reader<'_> {
             ))));
         };
         let (depth, compensated) = (self.stack.len(), self.modes.compensated);
-        let level = Level {
-            routine,
-            next,
-            kind: LevelKind::Subprogram,
-        };
+        let level = Level::new(routine, next, LevelKind::Subprogram);
         contour::course(
             self,
             self.modes.plane,

@@ -1,13 +1,20 @@
 //! Cycles: which there are, and where they are called.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::planes::is_frame_cycle;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::Cycle;
 use crate::model::event::EventKind;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
+
+/// Cycles that are in effect where they are called, whether they are known here or not.
+const CALLED: [u32; 60] = [
+    1, 2, 3, 4, 5, 6, 15, 16, 17, 18, 21, 22, 23, 24, 25, 27, 28, 29, 39, 200, 201, 202, 203, 204, 205, 206, 207, 208,
+    209, 210, 211, 212, 213, 214, 215, 225, 230, 231, 232, 233, 240, 241, 251, 252, 253, 254, 256, 257, 258, 262, 263,
+    264, 265, 267, 272, 273, 274, 275, 276, 277,
+];
 
 impl Reader<'_> {
     pub(in crate::controls::heidenhain) fn defined<'a>(&'a self, number: u32, line: &'a Line) -> Defined<'a> {
@@ -16,6 +23,9 @@ impl Reader<'_> {
             line,
             parameters: &self.parameters,
             unit: self.unit(),
+            feed_unit: self.feed_unit(),
+            speed: self.modes.speed,
+            per_revolution: self.modes.per_revolution,
         }
     }
 
@@ -25,9 +35,10 @@ impl Reader<'_> {
         if line.word(1) == "CALL" {
             self.codes(line)?;
             return match line.word(2) {
+                _ if self.cycles.program.is_some() => self.call_cycle(line),
                 "PAT" => self.call_at_pattern(line),
                 "POS" => self.call_at_position(line),
-                _ => self.call_cycle().map_err(whole),
+                _ => self.call_cycle(line),
             };
         }
         let name = line.word(2);
@@ -42,8 +53,18 @@ impl Reader<'_> {
         }
         match number {
             9 => self.dwell_cycle(part, line)?,
-            // Tolerance, spindle orientation: they move nothing.
-            13 | 32 => {}
+            // Tolerance, spindle orientation, loads: they move nothing.
+            13 | 32 | 238 | 239 => {}
+            // The program of 12.1.
+            12 if matches!(part, "" | "0") => {}
+            12 => {
+                let words = line.tokens.iter().skip(3).map(|token| token.text.as_str());
+                let path = words.filter(|word| *word != "PGM").collect::<String>();
+                self.cycles.program = Some(path);
+                self.modes.calls_after_moves = false;
+            }
+            19 => self.working_plane(part, line)?,
+            26 => self.scale_axes(part, line)?,
             14 => self.cycles.contours.name_labels(part, line),
             20 => self.contour_data(20, line)?,
             220 | 221 => self.pattern(number, line)?,
@@ -53,9 +74,17 @@ impl Reader<'_> {
                 let assumption = Assumption::new(what, "it cuts nothing: left out", "the moves written out");
                 self.track.assume(assumption.harmless());
             }
+            // What is in effect where it is defined may move all that follows.
+            _ if !CALLED.contains(&number) => {
+                let name = format!("cycle {number}");
+                self.track.leave_out_cycle(&name).map_err(whole)?;
+                self.cycles.cycle.get_or_insert(Cycle::Unknown(name));
+            }
             _ => {
                 self.cycles.cycle = Some(self.define(number, line)?);
                 self.cycles.block = Some((number, line.clone()));
+                self.cycles.program = None;
+                self.modes.calls_after_moves = false;
             }
         }
         Ok(())
@@ -89,13 +118,20 @@ impl Reader<'_> {
     }
 
     /// Calls the cycle at the current place.
-    pub(in crate::controls::heidenhain) fn call_cycle(&mut self) -> Result<(), NcProblem> {
+    pub(in crate::controls::heidenhain) fn call_cycle(&mut self, line: &Line) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        if let Some(program) = self.cycles.program.clone() {
+            return self.call_path(&program, line);
+        }
         match &self.cycles.cycle {
-            Some(cycle) => self.track.cycle_here(cycle, self.modes.plane, self.uncertain),
+            Some(cycle) => self
+                .track
+                .cycle_here(cycle, self.modes.plane, self.uncertain)
+                .map_err(whole),
             None if self.uncertain => Ok(()),
-            None => Err(NcProblem::syntax(
+            None => Err(whole(NcProblem::syntax(
                 "a cycle is called, but none is defined: expected CYCL DEF before it",
-            )),
+            ))),
         }
     }
 }

@@ -4,9 +4,10 @@
 //! are left out.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::{HoleCycle, HoleWork, Pecks, UNKNOWN_TOOL, WayOut};
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 /// By how much cycle 202 leaves the wall, in mm.
@@ -26,6 +27,11 @@ impl Reader<'_> {
             }
             _ => None,
         };
+        if matches!(number, 200 | 203 | 205 | 241) && self.defined(number, line).number(395)? == 1.0 {
+            let what = format!("how deep the point of the drill is below the depth of cycle {number} (Q395=1)");
+            let taken = "not at all: the depth is that of the point";
+            self.track.assume(Assumption::new(what, taken, "Q395=0"));
+        }
         let defined = self.defined(number, line);
         let hole = hole(&defined, tool)?;
         let front = defined.find(359)?.is_some_and(|_| matches!(number, 263..=267)) && defined.span(358)? != 0.0;
@@ -80,7 +86,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
         _ => defined.depth(201)?,
     };
     hole.bottom = surface + depth;
-    hole.feed = defined.find(206)?;
+    hole.feed = defined.feed(206)?;
     hole.out = WayOut::RapidToStart;
     let pecks = |infeed: f64, [decrease, least]: [f64; 2]| {
         HoleWork::Pecks(Pecks {
@@ -90,6 +96,7 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
             least: least.max(1e-3),
             clears: true,
             above: clearance.min(1.0),
+            rounding: 1e-9,
             ..Pecks::default()
         })
     };
@@ -97,9 +104,12 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
     match number {
         200 | 203 | 205 => {
             if let Some(infeed) = infeed {
-                hole.work = pecks(infeed, [defined.span(212)?.max(0.0), defined.span(205)?]);
+                // Without a least infeed they decrease to the decrement: no shorter ones are known of.
+                let decrement = defined.span(212)?.max(0.0);
+                let least = defined.length(205)?.filter(|least| *least > 0.0);
+                hole.work = pecks(infeed, [decrement, least.unwrap_or(decrement)]);
             }
-            if let (203, Some(out)) = (number, defined.find(208)?.filter(|feed| *feed > 0.0)) {
+            if let (203, Some(out)) = (number, defined.feed(208)?.filter(|feed| *feed > 0.0)) {
                 hole.out = WayOut::FeedToStart(Some(out));
             }
         }
@@ -116,14 +126,20 @@ fn hole(defined: &Defined, tool: Option<f64>) -> Result<Vec<HoleCycle>, Located>
                 }
                 all.push(before);
             }
-            hole.feed = hole.feed.or(defined.find(207)?);
+            hole.feed = hole.feed.or(defined.feed(207)?);
             hole.work = helix(defined, tool, &hole)?;
             all.push(hole);
             return Ok(all);
         }
+        // Out in rapid.
+        240 => {}
         // Boring, reaming and tapping.
         _ => {
-            let out = defined.find(208)?.filter(|feed| *feed > 0.0);
+            if let (207 | 209, Some(speed)) = (number, defined.speed) {
+                let pitch = defined.need(239)?.abs() / defined.unit;
+                hole.feed = Some(if defined.per_revolution { pitch } else { pitch * speed });
+            }
+            let out = defined.feed(208)?.filter(|feed| *feed > 0.0);
             hole.out = WayOut::FeedToStart(out);
             if number == 202 {
                 hole.aside = aside.unwrap_or_default().map(|c| c * FROM_THE_WALL);
@@ -152,11 +168,11 @@ fn back_boring(
         return Err(defined.fail(NcProblem::value("Q249 and Q250 of cycle 204", found, "positive")));
     }
     hole.bottom = surface + (-thickness - clearance - edge);
-    hole.feed = defined.find(253)?;
+    hole.feed = defined.feed(253)?;
     hole.aside = aside.map(|c| c * off);
     hole.work = HoleWork::Back {
         up: surface + (-thickness + depth - edge),
-        feed: defined.find(254)?,
+        feed: defined.feed(254)?,
         rapid: false,
     };
     Ok(())

@@ -5,7 +5,7 @@
 //! along the tool is added to the surface that the cycle has.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::{CyclePlace, Pattern};
 use crate::drive::Cycle;
 use crate::text::error::{Located, NcProblem};
@@ -106,7 +106,7 @@ impl Reader<'_> {
                 return Err((NcProblem::unsupported(found, "expected Z+0"), line.all()));
             };
             let raised = surface + above / self.unit();
-            let token = crate::controls::heidenhain::line::Token {
+            let token = crate::controls::heidenhain::language::line::Token {
                 text: format!("Q203={raised}"),
                 span: line.all(),
             };
@@ -153,8 +153,8 @@ impl Reader<'_> {
                 Some("MAX") => return Ok(true),
                 Some("") if line.word(index + 1) == "MAX" => return Ok(true),
                 Some(value) if !matches!(value, "" | "AUTO") => {
-                    let feed = self.parameters.value(value);
-                    self.track.feed = Some(feed.map_err(|problem| (problem, token.span.clone()))?);
+                    let feed = self.feed_word(value);
+                    feed.map_err(|problem| (problem, token.span.clone()))?;
                 }
                 _ => {}
             }

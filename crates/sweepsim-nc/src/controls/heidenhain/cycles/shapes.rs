@@ -3,7 +3,7 @@
 //! Sources: *TNC 620, Cycle Programming* (340 56x-02), 5.2 to 5.7 and 8.1 to 8.5; *TNC 640* (34059x) for cycle 233.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::controls::heidenhain::state::Defined;
 use crate::drive::{ArcSlot, Cycle, Pocket, Shape};
 use crate::text::error::{Located, NcProblem};
@@ -51,15 +51,21 @@ fn levels(defined: &Defined, tool: f64) -> Result<Pocket, Located> {
         true => [defined.span(368)?, defined.span(369)?],
         false => [0.0; 2],
     };
-    let infeed = defined.length(if kind == 2.0 { 338 } else { 202 })?;
+    // Finishing takes the floor too, at once, if something was left there.
+    let floor = kind == 2.0 && defined.span(369)? != 0.0;
+    let infeed = match kind {
+        _ if floor => None,
+        2.0 => defined.length(338)?,
+        _ => defined.length(202)?,
+    };
     let end = start.max(surface + defined.span(204)?);
     Ok(Pocket {
         infeed: infeed.unwrap_or(0.0),
         left,
-        rim_alone: kind == 2.0,
+        rim_alone: kind == 2.0 && !floor,
         step: tool * defined.find(370)?.filter(|overlap| *overlap > 0.0).unwrap_or(1.0),
-        feed: defined.find(207)?,
-        plunge: defined.find(206)?,
+        feed: defined.feed(207)?,
+        plunge: defined.feed(206)?,
         ..Pocket::new([end, start, surface, surface], tool)
     })
 }

@@ -5,8 +5,9 @@
 
 use super::arguments::Arguments;
 use crate::controls::contour;
-use crate::controls::siemens::interpreter::{Level, Reader};
+use crate::controls::siemens::interpreter::Reader;
 use crate::controls::siemens::language::structures::Search;
+use crate::controls::siemens::state::Level;
 use crate::controls::siemens::state::NamedContour;
 use crate::drive::{ContourCycle, Course, Cycle, Pocket, Shape, UNKNOWN_TOOL, Work};
 use crate::text::error::{Located, NcProblem};
@@ -93,7 +94,8 @@ impl Reader<'_> {
             }
         };
         let (depth, motion) = (self.stack.len(), self.modes.motion);
-        let mut level = Level::new(routine, std::collections::BTreeMap::new(), 1);
+        let mut level = Level::new(routine, 1);
+        level.called_modally = true;
         level.next = next;
         contour::course(
             self,

@@ -2,11 +2,12 @@
 
 use super::arguments::Arguments;
 use crate::drive::{HoleCycle, HoleWork, Pecks, WayOut};
+use crate::model::event::{EventKind, Spindle};
 use crate::text::error::NcProblem;
 
 /// The drilling cycles.
-pub(in crate::controls::siemens) const HOLES: [&str; 8] = [
-    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89",
+pub(in crate::controls::siemens) const HOLES: [&str; 10] = [
+    "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84", "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE87", "CYCLE88", "CYCLE89",
 ];
 
 /// `CYCLE81(RTP, RFP, SDIS, DP, DPR)` and its kin: with levels along the third axis of the plane.
@@ -19,6 +20,7 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
     // The depth is absolute, or relative to the surface.
     let depth = match (length(3), length(4)) {
         (_, Some(relative)) if relative != 0.0 => reference - relative.abs(),
+        (Some(depth), _) if arguments.is_relative() => reference - depth.abs(),
         (Some(depth), _) => depth,
         (None, _) => {
             return Err(NcProblem::syntax(format!(
@@ -38,7 +40,8 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
         (Some(first), _) => first,
         (None, _) => depth,
     };
-    let degression = length(7).unwrap_or(0.0).abs();
+    // Negative, it is a factor: how many infeeds there are changes nothing that is left.
+    let degression = length(7).unwrap_or(0.0).max(0.0);
     let infeed = reference - first;
     let work = if name == "CYCLE83" && infeed > 0.0 {
         // Infeeds decrease to the degression, and not below it.
@@ -47,7 +50,7 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
             infeed,
             decrease: degression,
             least: degression.max(1e-3),
-            rounding: 0.0,
+            rounding: 1e-9,
             dwells: true,
             clears: get(11) == Some(1.0),
             above: 1.0,
@@ -56,9 +59,9 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
         HoleWork::Plunge
     };
     let dwell = match name {
-        "CYCLE83" => get(8),
-        "CYCLE81" | "CYCLE840" => None,
-        _ => get(5),
+        "CYCLE83" => arguments.dwell(8),
+        "CYCLE81" | "CYCLE840" | "CYCLE87" => None,
+        _ => arguments.dwell(5),
     };
     let feeds_out = matches!(name, "CYCLE84" | "CYCLE840" | "CYCLE85" | "CYCLE89");
     let mut hole = HoleCycle {
@@ -66,6 +69,11 @@ pub(in crate::controls::siemens) fn hole_cycle(arguments: &Arguments) -> Result<
         work,
         ..HoleCycle::new(reference + clearance, depth, dwell, feeds_out)
     };
+    if matches!(name, "CYCLE87" | "CYCLE88") {
+        // The operator goes on; the tool comes out in rapid.
+        hole.at_bottom
+            .extend([EventKind::Spindle(Spindle::Stopped), EventKind::Stop]);
+    }
     if name == "CYCLE85" {
         // FFR and RFF: the feeds down and up.
         hole.feed = arguments.feed(6);

@@ -59,6 +59,7 @@ fn rectangle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
     ];
     let vari = 16 + at;
     let finishes = arguments.finishes(vari);
+    let floor = arguments.finishes_floor(vari, 12 + at);
     let raw = [18, 19].map(|index| 0.5 * arguments.length(index).abs());
     let turn = arguments.get(9 + at).unwrap_or(0.0);
     let width = arguments.length(17);
@@ -68,13 +69,13 @@ fn rectangle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
             corner: arguments.length(6 + at),
             raw: stud.then_some([0, 1].map(|k| raw[k].max(half[k]))),
             turn,
-            infeed: arguments.length(10 + at),
+            infeed: if floor { 0.0 } else { arguments.length(10 + at) },
             left: if finishes {
                 [0.0; 2]
             } else {
                 [arguments.length(11 + at), arguments.length(12 + at)]
             },
-            rim_alone: finishes,
+            rim_alone: finishes && !floor,
             step: if width > 0.0 && !stud { width } else { 0.8 * 2.0 * tool },
             feed: arguments.feed(13 + at),
             plunge: arguments.feed(14 + at),
@@ -94,19 +95,20 @@ fn circle(arguments: &Arguments, tool: f64) -> Result<Milled, NcProblem> {
     let levels = arguments.levels(stud.then_some(4))?;
     let radius = arguments.need(4 + at, "PRAD")?.abs() * if stud { 0.5 } else { 1.0 };
     let finishes = arguments.finishes(13 + at);
+    let floor = arguments.finishes_floor(13 + at, 9 + at);
     let width = arguments.length(14);
     Ok(Milled {
         pocket: Pocket {
             half: [radius; 2],
             corner: radius,
             raw: stud.then_some([(0.5 * arguments.length(15)).max(radius); 2]),
-            infeed: arguments.length(7 + at),
+            infeed: if floor { 0.0 } else { arguments.length(7 + at) },
             left: if finishes {
                 [0.0; 2]
             } else {
                 [arguments.length(8 + at), arguments.length(9 + at)]
             },
-            rim_alone: finishes,
+            rim_alone: finishes && !floor,
             step: if width > 0.0 && !stud { width } else { 0.8 * 2.0 * tool },
             feed: arguments.feed(10 + at),
             plunge: arguments.feed(11 + at),
@@ -223,6 +225,10 @@ impl Reader<'_> {
         let Some(shape) = milled(arguments, 0.0) else {
             return Ok(false);
         };
+        if arguments.is_unknown_kind() {
+            self.track.leave_out_cycle(name)?;
+            return Ok(true);
+        }
         let unknown = shape?.pocket.widest_unknown_tool();
         let tool = self.cutter_radius(unknown)?;
         let Some(milled) = milled(arguments, tool) else {

@@ -77,7 +77,7 @@ impl Reader<'_> {
             return Ok(false);
         };
         let places = places?;
-        let Some((_, Modal::Cycle(cycle))) = self.modes.modal_call.clone() else {
+        let Some(Modal::Cycle(cycle)) = self.modes.modal_call.clone() else {
             let taken = "no cycle is modal: it moves nothing";
             self.track
                 .assume(Assumption::new(format!("what {name} calls"), taken, "MCALL before it"));

@@ -2,7 +2,7 @@
 
 use super::cursor::{Cursor, without_comment};
 use super::expression::Expression;
-use super::structures::{Item, Search, Statement, define, repeat};
+use super::structures::{Item, Statement, case, define, head, jump, repeat};
 use crate::text::error::{Located, NcProblem};
 
 /// A line.
@@ -51,9 +51,19 @@ pub(crate) fn line(text: &str) -> Result<Line, Located> {
             cursor.at += 1;
         }
     }
+    // The number of a main block, `:10`.
+    if cursor.peek() == Some(':') {
+        cursor.at += 1;
+        cursor.at += cursor.rest().len() - cursor.rest().trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    }
     loop {
         let mut ahead = cursor.clone();
         let Some((name, _)) = ahead.name() else { break };
+        let (mut name, next) = (name, ahead.adjacent());
+        if let Some(first) = first_of(&name, next).filter(|_| name.starts_with('N')) {
+            ahead.at -= name.len() - first;
+            name.truncate(first);
+        }
         let number = name.len() > 1 && name.starts_with('N') && name[1..].chars().all(|c| c.is_ascii_digit());
         let label = ahead.peek() == Some(':') && !ahead.rest().starts_with(":=");
         if label {
@@ -128,29 +138,13 @@ fn statement(cursor: &mut Cursor) -> Result<Statement, Located> {
         }
         "REPEAT" | "REPEATB" => repeat(cursor)?,
         "DEF" => define(cursor)?,
-        "PROC" => {
-            skip();
-            let name = cursor.name();
-            let mut parameters = Vec::new();
-            if name.is_some() && cursor.take("(") {
-                while !cursor.take(")") {
-                    // The type, then the name: the last name before a comma.
-                    match cursor.name() {
-                        Some((name, _)) if matches!(cursor.peek(), Some(',' | ')' | '=')) => parameters.push(name),
-                        Some(_) => {}
-                        None if cursor.take(",") => {}
-                        None => return Err(cursor.unexpected("a parameter")),
-                    }
-                }
-            }
-            cursor.at += cursor.rest().len();
-            Statement::Proc(parameters)
-        }
+        "PROC" => Statement::Proc(head(cursor)?),
+        "CASE" if is_whole_word(&start) => case(cursor)?,
         "EXTERN" | "REDEF" => {
             cursor.at += cursor.rest().len();
             Statement::Declaration
         }
-        "CASE" | "DEFINE" | "ID" | "IDS" | "WHEN" | "WHENEVER" | "EVERY" | "FROM" if is_whole_word(&start) => {
+        "DEFINE" | "ID" | "IDS" | "WHEN" | "WHENEVER" | "EVERY" | "FROM" if is_whole_word(&start) => {
             let mut at = start.clone();
             let span = at.name().map_or(0..0, |(_, span)| span);
             let problem = NcProblem::unsupported(format!("{key} is"), "expected a program without it");
@@ -177,22 +171,35 @@ fn is_whole_word(at: &Cursor) -> bool {
     !matches!(ahead.peek(), Some('=' | '['))
 }
 
-fn jump(cursor: &mut Cursor) -> Result<(Search, String), Located> {
-    let search = match cursor.name().map(|(name, _)| name).as_deref() {
-        Some("GOTOF") => Search::Forward,
-        Some("GOTOB") => Search::Backward,
-        _ => Search::Anywhere,
+/// Where the first word ends of some that stand without blanks, as `G0X1Y2`: none of them has more than one letter, and what follows is no `=` or
+/// list.
+fn first_of(name: &str, next: Option<char>) -> Option<usize> {
+    let words = name.split_inclusive(|c: char| c.is_ascii_digit());
+    let mut letters = words.map(|word| word.bytes().filter(u8::is_ascii_alphabetic).count());
+    let ends_in_letter = name.ends_with(|c: char| c.is_ascii_alphabetic());
+    let number_follows = next.is_some_and(|c| "+-.".contains(c));
+    let complete = match ends_in_letter {
+        true => number_follows || next == Some('='),
+        false => next.is_none_or(|c| c.is_whitespace() || c == '.'),
     };
-    match cursor.name() {
-        Some((label, _)) => Ok((search, label)),
-        None => Err(cursor.unexpected("a label or a block number")),
+    let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
+    let digits = |c: char| c.is_ascii_digit();
+    if !(complete && begins && letters.all(|count| count <= 1) && name.bytes().all(|b| b.is_ascii_alphanumeric())) {
+        return None;
     }
+    let first = 1 + name[1..].find(|c| !digits(c))?;
+    (first > 1).then_some(first)
 }
 
 fn item(cursor: &mut Cursor) -> Result<Item, Located> {
-    let Some((name, span)) = cursor.name() else {
+    let Some((mut name, mut span)) = cursor.name() else {
         return Err(cursor.unexpected("a word"));
     };
+    if let Some(first) = first_of(&name, cursor.adjacent()) {
+        name.truncate(first);
+        span.end = span.start + first;
+        cursor.at = span.end;
+    }
     let mut chars = name.chars();
     let letter = chars.next().unwrap_or('_');
     let digits = chars.as_str();
@@ -243,7 +250,9 @@ fn item(cursor: &mut Cursor) -> Result<Item, Located> {
         });
     }
     let mut arguments = None;
-    if cursor.peek() == Some('(') {
+    if cursor.peek() == Some('"') && matches!(name.as_str(), "CALL" | "EXTCALL") {
+        arguments = Some(vec![Some(Expression::parse(cursor)?)]);
+    } else if cursor.peek() == Some('(') {
         cursor.expect('(')?;
         let mut list = Vec::new();
         loop {

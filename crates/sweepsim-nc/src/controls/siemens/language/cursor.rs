@@ -121,6 +121,31 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// A whole number in quotes, to a base by its letter: `'HFF'`, `'B101'`, `'D9'`.
+    pub fn constant(&mut self) -> Result<f64, Located> {
+        let start = self.at;
+        self.expect('\'')?;
+        let rest = self.rest();
+        let end = rest.find('\'').unwrap_or(rest.len());
+        let (inside, span) = (&rest[..end], start..self.at + end);
+        let (base, digits) = match inside.chars().next() {
+            Some('H' | 'h') => (16, &inside[1..]),
+            Some('B' | 'b') => (2, &inside[1..]),
+            Some('D' | 'd') => (10, &inside[1..]),
+            _ => (10, inside),
+        };
+        match u32::from_str_radix(digits, base) {
+            Ok(value) if end < rest.len() => {
+                self.at = span.end + 1;
+                Ok(f64::from(value))
+            }
+            _ => {
+                let problem = "expected a whole number in quotes, such as 'HFF' or 'B101'";
+                Err((NcProblem::syntax(problem), span))
+            }
+        }
+    }
+
     /// A text in quotes.
     pub fn quoted(&mut self) -> Result<String, Located> {
         self.expect('"')?;
@@ -148,6 +173,21 @@ pub(crate) fn without_comment(line: &str) -> &str {
         }
     }
     line
+}
+
+/// Whether a text changes tools by M6, not by T alone.
+pub(crate) fn changes_by_m6(text: &str) -> bool {
+    let codes = text.lines().map(without_comment);
+    let mut pieces = codes.flat_map(|code| code.split(|c: char| !c.is_ascii_alphanumeric()));
+    pieces.any(|piece| {
+        let upper = piece.to_ascii_uppercase();
+        upper.match_indices('M').any(|(at, _)| {
+            let digits: String = upper[at + 1..].chars().take_while(char::is_ascii_digit).collect();
+            // In T1M6 too, not in a name.
+            let before = upper[..at].chars().next_back();
+            matches!(digits.as_str(), "6" | "06") && before.is_none_or(|c| c.is_ascii_digit())
+        })
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cursor::Cursor;
+use super::functions::{binary, function};
 use crate::text::error::{Located, NcProblem};
 
 /// The deepest nesting of an expression.
@@ -33,12 +34,18 @@ pub(crate) enum Kind {
     Binary(&'static str, Box<Expression>, Box<Expression>),
 }
 
-/// Operators by precedence, the weakest first.
-const OPERATORS: [&[&str]; 7] = [
-    &["OR", "B_OR"],
-    &["XOR", "B_XOR"],
-    &["AND", "B_AND"],
-    &["==", "<>", "<=", ">=", "<<", "<", ">"],
+/// Operators by precedence, the weakest first: those of bits and of logic come before comparisons.
+///
+/// Source: Siemens, *Job planning, Programming Manual*, 07/2010 (6FC5398-2BP40-0BA0), 1.7 Priority of the operations.
+const OPERATORS: [&[&str]; 11] = [
+    &["==", "<>", "<=", ">=", "<", ">"],
+    &["<<"],
+    &["OR"],
+    &["XOR"],
+    &["AND"],
+    &["B_OR"],
+    &["B_XOR"],
+    &["B_AND"],
     &["+", "-"],
     &["*", "/", "DIV", "MOD"],
     &[],
@@ -82,14 +89,14 @@ impl Expression {
                 });
             }
         }
-        if matches!(cursor.peek_name().as_deref(), Some("NOT" | "B_NOT")) {
-            cursor.name();
-            let inner = Self::level(cursor, OPERATORS.len() - 1, depth + 1)?;
-            let span = start..inner.span.end;
-            return Ok(Self {
-                kind: Kind::Unary("NOT", Box::new(inner)),
-                span,
-            });
+        for not in ["NOT", "B_NOT"] {
+            if cursor.peek_name().as_deref() == Some(not) {
+                cursor.name();
+                let inner = Self::level(cursor, OPERATORS.len() - 1, depth + 1)?;
+                let span = start..inner.span.end;
+                let kind = Kind::Unary(not, Box::new(inner));
+                return Ok(Self { kind, span });
+            }
         }
         Self::atom(cursor, depth)
     }
@@ -107,6 +114,7 @@ impl Expression {
                 inner.kind
             }
             Some('"') => Kind::Text(cursor.quoted()?),
+            Some('\'') => Kind::Number(cursor.constant()?),
             Some(c) if c.is_ascii_digit() || c == '.' => Kind::Number(cursor.number()?),
             _ => {
                 let Some((name, _)) = cursor.name() else {
@@ -168,12 +176,13 @@ impl Expression {
             }
             Kind::Unary("-", inner) => -number(inner)?,
             Kind::Unary("NOT", inner) => f64::from(number(inner)? == 0.0),
+            Kind::Unary("B_NOT", inner) => f64::from(!(number(inner)? as i32)),
             Kind::Unary(_, inner) => number(inner)?,
             Kind::Binary(operator, left, right) => match (*operator, left.value(lookup)?, right.value(lookup)?) {
-                ("==", left, right) => f64::from(left == right),
-                ("<>", left, right) => f64::from(left != right),
                 ("<<", left, right) => return Ok(Value::Text(format!("{}{}", left.text(), right.text()))),
                 (operator, Value::Number(a), Value::Number(b)) => binary(operator, a, b).map_err(here)?,
+                ("==", left, right) => f64::from(left == right),
+                ("<>", left, right) => f64::from(left != right),
                 _ => return Err(here(NcProblem::syntax("a text in a calculation: expected a number"))),
             },
             Kind::Call(name, arguments) => {
@@ -243,69 +252,15 @@ fn operator(cursor: &mut Cursor, operators: &[&'static str]) -> Option<&'static 
             }
             found
         } else {
-            cursor.take(operator)
+            // `<` is not the first half of `<<`.
+            let half = *operator == "<" && cursor.peek().is_some() && cursor.rest().starts_with("<<");
+            !half && cursor.take(operator)
         };
         if found {
             return Some(operator);
         }
     }
     None
-}
-
-fn binary(operator: &str, a: f64, b: f64) -> Result<f64, NcProblem> {
-    if matches!(operator, "/" | "DIV" | "MOD") && b == 0.0 {
-        return Err(NcProblem::syntax("a division by 0"));
-    }
-    // Bits of whole numbers of at most 32 bits, as the control has them.
-    let bits = |value: f64| value as i32;
-    Ok(match operator {
-        "+" => a + b,
-        "-" => a - b,
-        "*" => a * b,
-        "/" => a / b,
-        "DIV" => (a / b).trunc(),
-        "MOD" => a % b,
-        "<" => f64::from(a < b),
-        ">" => f64::from(a > b),
-        "<=" => f64::from(a <= b),
-        ">=" => f64::from(a >= b),
-        "AND" => f64::from(a != 0.0 && b != 0.0),
-        "OR" => f64::from(a != 0.0 || b != 0.0),
-        "XOR" => f64::from((a != 0.0) != (b != 0.0)),
-        "B_AND" => f64::from(bits(a) & bits(b)),
-        "B_OR" => f64::from(bits(a) | bits(b)),
-        _ => f64::from(bits(a) ^ bits(b)),
-    })
-}
-
-fn function(name: &str, values: &[f64]) -> Result<f64, NcProblem> {
-    Ok(match (name, values) {
-        ("SIN", [x]) => x.to_radians().sin(),
-        ("COS", [x]) => x.to_radians().cos(),
-        ("TAN", [x]) => x.to_radians().tan(),
-        ("ASIN", [x]) if x.abs() <= 1.0 => x.asin().to_degrees(),
-        ("ACOS", [x]) if x.abs() <= 1.0 => x.acos().to_degrees(),
-        ("ATAN2", [y, x]) => y.atan2(*x).to_degrees(),
-        ("SQRT", [x]) if *x >= 0.0 => x.sqrt(),
-        ("POT", [x]) => x * x,
-        ("ABS", [x]) => x.abs(),
-        ("TRUNC", [x]) => x.trunc(),
-        ("ROUND", [x]) => x.round(),
-        ("ROUNDUP", [x]) => x.ceil(),
-        ("LN", [x]) if *x > 0.0 => x.ln(),
-        ("EXP", [x]) => x.exp(),
-        ("MINVAL", [a, b]) => a.min(*b),
-        ("MAXVAL", [a, b]) => a.max(*b),
-        ("BOUND", [low, high, x]) => x.max(*low).min(*high),
-        _ => {
-            let arguments: Vec<String> = values.iter().map(f64::to_string).collect();
-            return Err(NcProblem::value(
-                "this function",
-                format!("{name}({})", arguments.join(", ")),
-                "one that is known, with arguments in its range",
-            ));
-        }
-    })
 }
 
 #[cfg(test)]
@@ -336,6 +291,23 @@ mod tests {
             ("7 DIV 2 + 7 MOD 2", 4.0),
             ("1<2 AND 2<>3", 1.0),
             ("NOT 1 == 1", 0.0),
+            ("B_NOT 5", -6.0),
+            // Operators of bits and of logic before comparisons.
+            ("6 B_AND 3 == 2", 1.0),
+            ("2 == 6 B_AND 3", 1.0),
+            ("1 B_OR 6 B_XOR 2 B_AND 3", 5.0),
+            ("2 == 2 AND 1", 0.0),
+            ("(2 == 2) AND 1", 1.0),
+            ("3 > 1 OR 2", 1.0),
+            ("0 AND 1 XOR 1 OR 0", 1.0),
+            // Numbers are the same within 1e-12 of their size.
+            ("0.1+0.2 == 0.3", 1.0),
+            ("0.1+0.2 <> 0.3", 0.0),
+            ("0.1+0.2 > 0.3", 0.0),
+            ("0.3 >= 0.1+0.2", 1.0),
+            ("1.000001 > 1", 1.0),
+            ("'HFF' + 'B101' + 'D9'", 269.0),
+            ("ROUNDUP(3.1)", 4.0),
             ("SIN(30)*2", 1.0),
             ("ATAN2(1,1)", 45.0),
             ("POT(3)+SQRT(16)", 13.0),

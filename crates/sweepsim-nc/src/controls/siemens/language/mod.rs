@@ -3,6 +3,7 @@
 pub(crate) mod block;
 pub(crate) mod cursor;
 pub(crate) mod expression;
+mod functions;
 mod labels;
 pub(crate) mod routine;
 pub(crate) mod structures;

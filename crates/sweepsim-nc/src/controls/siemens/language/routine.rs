@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::block::{self, Line};
 use super::labels::Labels;
-use super::structures::{Search, Statement};
+use super::structures::{Head, Search, Statement};
 use crate::controls::recent::Recent;
 use crate::text::error::{Located, NcProblem};
 use crate::text::kept::KeptText;
@@ -19,8 +19,8 @@ pub(crate) struct Routine {
     /// Its lines in the text, from 0.
     lines: Range<usize>,
     recent: Recent<Line>,
-    /// The parameters of its head, if it has one.
-    pub parameters: Vec<String>,
+    /// Its head, if it has one.
+    pub head: Head,
     /// For IF its ELSE or ENDIF, for ELSE its ENDIF, for a loop its end, for an end its beginning.
     partners: BTreeMap<usize, usize>,
     labels: Labels,
@@ -71,7 +71,7 @@ impl Routine {
             text,
             lines,
             recent: Recent::default(),
-            parameters: Vec::new(),
+            head: Head::default(),
             partners: BTreeMap::new(),
             labels: Labels::default(),
         };
@@ -105,13 +105,13 @@ impl Routine {
                 Statement::Repeat => open.push((index, "REPEAT")),
                 Statement::Until(_) => pair(&["REPEAT"]),
                 Statement::EndLoop(kind) => pair(&[kind]),
-                Statement::Proc(parameters) => {
-                    head.get_or_insert(parameters);
+                Statement::Proc(own) => {
+                    head.get_or_insert(own);
                 }
                 _ => {}
             }
         }
-        routine.parameters = head.unwrap_or_default();
+        routine.head = head.unwrap_or_default();
         routine.labels.finish();
         routine
     }
@@ -152,6 +152,22 @@ impl Routine {
                 span,
             )
         })
+    }
+
+    /// Where a part that is repeated from a label begins and ends: at another label, else at `ENDLABEL`, else before the repeat.
+    pub fn section(&self, from: &str, to: Option<&str>, block: bool, index: usize) -> Result<Range<usize>, Located> {
+        let start = self.find(from, index, Search::Backward);
+        let start = start.or_else(|_| self.find(from, index, Search::Forward))?;
+        let end = match to {
+            Some(to) => self.find(to, start, Search::Forward)? + 1,
+            None if block => start + 1,
+            None => match self.find("ENDLABEL", start, Search::Forward) {
+                Ok(end) if start > index || end < index => end + 1,
+                Err(missing) if start > index => return Err(missing),
+                _ => index,
+            },
+        };
+        Ok(start..end)
     }
 
     /// The line of a label.

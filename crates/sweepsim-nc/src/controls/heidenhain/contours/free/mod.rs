@@ -9,8 +9,8 @@ mod words;
 use std::collections::VecDeque;
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
-use crate::controls::heidenhain::moves::MoveWords;
+use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::CircularArc;
 use crate::drive::free::{Element, Flat, Solved, Unsolved, contour, unit};
 use crate::text::assumption::Assumption;
@@ -78,7 +78,7 @@ impl Reader<'_> {
         }
         .map_err(whole)?;
         if calls {
-            self.call_cycle().map_err(whole)?;
+            self.call_cycle(line)?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The words of the blocks of a free contour.
 
 use crate::controls::heidenhain::interpreter::Reader;
-use crate::controls::heidenhain::line::Line;
+use crate::controls::heidenhain::language::line::Line;
 use crate::drive::free::{Element, Flat, Value};
 use crate::text::error::{Located, NcProblem};
 
@@ -27,7 +27,7 @@ fn geometry(line: &Line) -> Result<Vec<Word<'static>>, Located> {
         let at = index;
         let text = line.word(index).to_owned();
         index += 1;
-        let (relative, plain) = crate::controls::heidenhain::line::relative(&text);
+        let (relative, plain) = crate::controls::heidenhain::language::line::relative(&text);
         let named = NAMES.iter().find_map(|name| {
             let rest = plain.strip_prefix(name)?;
             let value = |c: char| "+-.,Q".contains(c) || c.is_ascii_digit();

@@ -8,13 +8,13 @@ use crate::controls::recent::Recent;
 use crate::text::kept::KeptText;
 
 /// A program's text, block by block.
-pub(super) struct Routine {
-    pub(super) file: usize,
+pub(in crate::controls::heidenhain) struct Routine {
+    pub(in crate::controls::heidenhain) file: usize,
     text: KeptText,
     recent: Recent<Line>,
     /// Blocks that go on in the lines below: the first line of each and the last, in order.
     joined: Vec<(usize, usize)>,
-    pub(super) labels: BTreeMap<String, usize>,
+    pub(in crate::controls::heidenhain) labels: BTreeMap<String, usize>,
 }
 
 impl Routine {

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::formula;
 use super::line::Line;
 use crate::text::error::{Located, NcProblem};
 
@@ -11,19 +12,21 @@ const MOST: usize = 100_000;
 
 /// What an FN asks for besides a value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Jump {
+pub(in crate::controls::heidenhain) enum Jump {
     None,
     /// To a label.
     To(String),
     /// A parameter gets what only the control knows: its name, and what that is.
     Read(String, String),
+    /// An error of the program, with its number: it ends here.
+    Stop(String),
     /// Something that moves nothing, by its number.
     Ignored(u32),
 }
 
 /// Q parameters.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Parameters {
+pub(in crate::controls::heidenhain) struct Parameters {
     values: BTreeMap<String, f64>,
     /// Whether those that nothing sets are an error: else they are 0, and asked for.
     strict: bool,
@@ -41,6 +44,21 @@ impl Parameters {
     /// Those that have been asked for since, and nothing has set.
     pub fn asked(&mut self) -> BTreeSet<String> {
         std::mem::take(self.asked.get_mut())
+    }
+
+    /// Takes the parameters of one program alone (`QL`), which is called or has ended.
+    pub fn take_locals(&mut self) -> Vec<(String, f64)> {
+        let local = |name: &str| name.starts_with("QL");
+        let taken = self.values.iter().filter(|(name, _)| local(name));
+        let taken = taken.map(|(name, value)| (name.clone(), *value)).collect();
+        self.values.retain(|name, _| !local(name));
+        taken
+    }
+
+    /// Gives them back to the program that goes on.
+    pub fn give_locals(&mut self, locals: Vec<(String, f64)>) {
+        self.take_locals();
+        self.values.extend(locals);
     }
 
     /// A number, or a parameter with or without a sign: `+10.5`, `-Q12`, `QL3`.
@@ -103,19 +121,7 @@ impl Parameters {
         let Some((name, formula)) = text.split_once('=') else {
             return Err(whole(NcProblem::syntax(format!("{text:?}: expected Q1 = a value"))));
         };
-        let mut parser = Parser {
-            text: formula,
-            parameters: self,
-            depth: 0,
-        };
-        let value = parser.sum().map_err(whole)?;
-        if !parser.text.trim().is_empty() {
-            let problem = NcProblem::syntax(format!(
-                "{:?} here: expected an operator or the end of the block",
-                parser.text.trim()
-            ));
-            return Err(whole(problem));
-        }
+        let value = formula::value(formula, &|name| self.value(name)).map_err(whole)?;
         self.set(name.trim(), value).map_err(whole)
     }
 
@@ -182,7 +188,8 @@ impl Parameters {
             (6, [_, "=", "SIN", a]) => value(a)?.to_radians().sin(),
             (7, [_, "=", "COS", a]) => value(a)?.to_radians().cos(),
             (8, [_, "=", a, "LEN", b]) => value(a)?.hypot(value(b)?),
-            (13, [_, "=", a, "ANG", b]) => value(a)?.atan2(value(b)?).to_degrees(),
+            // From 0 to 360 degrees.
+            (13, [_, "=", a, "ANG", b]) => value(a)?.atan2(value(b)?).to_degrees().rem_euclid(360.0),
             (0..=8 | 13, _) => return fail("this FN has other words: expected such as FN 1: Q1 = +Q2 + +3"),
             // What the control knows: data of the system, of a table, of the PLC.
             (18 | 28, _) => {
@@ -194,8 +201,9 @@ impl Parameters {
                 let of: Vec<&str> = of.copied().collect();
                 return Ok(Jump::Read(name, of.join(" ")));
             }
-            // Errors, texts, files, tables, and what goes to the PLC or waits for it.
-            (14..=17 | 19..=27 | 29..=38, _) => return Ok(Jump::Ignored(number)),
+            (14, _) => return Ok(Jump::Stop(rest.last().map(ToString::to_string).unwrap_or_default())),
+            // Texts, files, tables, and what goes to the PLC or waits for it.
+            (15..=17 | 19..=27 | 29..=38, _) => return Ok(Jump::Ignored(number)),
             _ => {
                 let problem = NcProblem::unsupported(format!("FN {number} is"), "expected FN 0 to FN 38");
                 return Err(whole(problem));
@@ -211,125 +219,6 @@ fn is_name(name: &str) -> bool {
     let rest = name.strip_prefix('Q').unwrap_or("");
     let digits = rest.trim_start_matches(['L', 'R']);
     !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()) && rest.len() - digits.len() <= 1
-}
-
-/// The deepest nesting of a formula.
-const DEEPEST: usize = 60;
-
-struct Parser<'a> {
-    text: &'a str,
-    parameters: &'a Parameters,
-    depth: usize,
-}
-
-impl Parser<'_> {
-    fn take(&mut self, symbol: char) -> bool {
-        self.text = self.text.trim_start();
-        match self.text.strip_prefix(symbol) {
-            Some(rest) => {
-                self.text = rest;
-                true
-            }
-            None => false,
-        }
-    }
-
-    fn sum(&mut self) -> Result<f64, NcProblem> {
-        let mut sum = self.product()?;
-        loop {
-            if self.take('+') {
-                sum += self.product()?;
-            } else if self.take('-') {
-                sum -= self.product()?;
-            } else {
-                return Ok(sum);
-            }
-        }
-    }
-
-    fn product(&mut self) -> Result<f64, NcProblem> {
-        let mut product = self.power()?;
-        loop {
-            if self.take('*') {
-                product *= self.power()?;
-            } else if self.take('/') {
-                let divisor = self.power()?;
-                if divisor == 0.0 {
-                    return Err(NcProblem::syntax("a division by 0"));
-                }
-                product /= divisor;
-            } else {
-                return Ok(product);
-            }
-        }
-    }
-
-    fn power(&mut self) -> Result<f64, NcProblem> {
-        let base = self.atom()?;
-        Ok(if self.take('^') { base.powf(self.atom()?) } else { base })
-    }
-
-    fn atom(&mut self) -> Result<f64, NcProblem> {
-        self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(NcProblem::syntax("a formula that is nested too deeply"));
-        }
-        let value = self.nested();
-        self.depth -= 1;
-        value
-    }
-
-    fn nested(&mut self) -> Result<f64, NcProblem> {
-        if self.take('-') {
-            return Ok(-self.atom()?);
-        }
-        if self.take('+') {
-            return self.atom();
-        }
-        if self.take('(') {
-            let value = self.sum()?;
-            return if self.take(')') {
-                Ok(value)
-            } else {
-                Err(NcProblem::syntax("a parenthesis that is not closed: expected `)`"))
-            };
-        }
-        let end = self
-            .text
-            .find(|c: char| !(c.is_ascii_alphanumeric() || c == '.'))
-            .unwrap_or(self.text.len());
-        let (word, rest) = self.text.split_at(end);
-        self.text = rest;
-        let angle = |x: f64| x.to_radians();
-        Ok(match word {
-            "PI" => std::f64::consts::PI,
-            "SIN" => angle(self.atom()?).sin(),
-            "COS" => angle(self.atom()?).cos(),
-            "TAN" => angle(self.atom()?).tan(),
-            "ASIN" => self.atom()?.asin().to_degrees(),
-            "ACOS" => self.atom()?.acos().to_degrees(),
-            "ATAN" => self.atom()?.atan().to_degrees(),
-            "SQRT" => self.atom()?.sqrt(),
-            "SQ" => self.atom()?.powi(2),
-            "SGN" => {
-                let value = self.atom()?;
-                if value == 0.0 { 0.0 } else { value.signum() }
-            }
-            "LN" => self.atom()?.ln(),
-            "LOG" => self.atom()?.log10(),
-            "EXP" => self.atom()?.exp(),
-            "ABS" => self.atom()?.abs(),
-            "NEG" => -self.atom()?,
-            "INT" => self.atom()?.trunc(),
-            "FRAC" => self.atom()?.fract(),
-            "" => {
-                return Err(NcProblem::syntax(
-                    "the formula ends too early, or has a sign that is not understood",
-                ));
-            }
-            word => self.parameters.value(word)?,
-        })
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// A word of a block: `X+10`, `IX-5`, `R0`, `FMAX`, `Q5=`, `+Q1`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Token {
+pub(in crate::controls::heidenhain) struct Token {
     /// In capitals.
     pub text: String,
     pub span: Range<usize>,
@@ -12,13 +12,13 @@ pub(super) struct Token {
 
 /// A block.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Line {
+pub(in crate::controls::heidenhain) struct Line {
     pub skipped: bool,
     pub tokens: Vec<Token>,
 }
 
 /// Divides a line into words, without its number and comment.
-pub(super) fn line(text: &str) -> Line {
+pub(in crate::controls::heidenhain) fn line(text: &str) -> Line {
     let mut quoted = false;
     let mut code = text;
     for (at, c) in text.char_indices() {
@@ -125,7 +125,7 @@ impl Line {
 }
 
 /// A word without its leading I, and whether it had one: a relative value.
-pub(super) fn relative(word: &str) -> (bool, &str) {
+pub(in crate::controls::heidenhain) fn relative(word: &str) -> (bool, &str) {
     word.strip_prefix('I').map_or((false, word), |rest| (true, rest))
 }
 
