@@ -186,7 +186,7 @@ impl Convex {
         directions.all(|direction| dot(direction, point) <= self.meridian_support(direction).0)
     }
 
-    /// The direction of a point outside from the nearest of the solid, in the half-plane; for one inside, there is none.
+    /// The direction of a point from the nearest of the solid, in the half-plane; for one inside, there is none.
     #[must_use]
     pub fn away(&self, point: [f64; 2]) -> Option<[f64; 2]> {
         let from = |other: [f64; 2]| [point[0] - other[0], point[1] - other[1]];
