@@ -4,9 +4,9 @@
 //! any set that holds that part of the outline, and of the axis beside it, turned about the axis. A certificate says
 //! which curves of the outline make one solid, or into how many parts a curve is cut; the solids are made here.
 //!
-//! **Inside.** Of what it holds, a tool may have convex polygons, turned about the axis. If the outline never falls, the
-//! tool is all that is nearer to the axis than it: where consecutive lines and arcs of it turn left, the tool beside them
-//! is convex, and what is between points in it is in it.
+//! **Inside.** Of what it holds, a tool may have convex polygons, turned about the axis. If the outline never falls,
+//! the tool is all that is nearer to the axis than it: where consecutive lines and arcs of it turn left, the tool
+//! beside them is convex, and what is between points in it is in it.
 
 use crate::scene::Curve;
 use crate::vector::{EPS, MORE, V3, dot, norm, scaled, sub};
