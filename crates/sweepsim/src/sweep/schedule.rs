@@ -4,6 +4,7 @@ use crate::cutter::Cutter;
 use crate::cutter::outline::Outline;
 use crate::envelope::Size;
 use crate::error::SweepError;
+use crate::methods::ceiling::Ceiling;
 use crate::methods::charts::Charts;
 use crate::methods::harvest::Collector;
 use crate::methods::harvest::{Gathered, Harvest, Numbered};
@@ -14,7 +15,6 @@ use crate::methods::method::CrossingMethod;
 use crate::methods::planes::Planes;
 use crate::methods::search::Search;
 use crate::methods::surface::Surfaces;
-use crate::methods::translation::{self, Ceiling};
 use crate::methods::workspace::Workspace;
 use crate::repair_budget::RepairBudget;
 use crate::sweep::boundary_operator::BoundaryOperator;
@@ -231,7 +231,7 @@ impl SweepJob<'_> {
                 lines: &lines,
                 harvest: &mut harvest,
             };
-            translation::close(ceiling, chunk, self.size.system_rounding, &mut collector);
+            ceiling.close(chunk, self.size.system_rounding, &mut collector);
             all.add(harvest);
         }
         Ok(all)
