@@ -64,7 +64,7 @@ impl Plan {
                 system_rounding: self.tolerances.rounding(),
             },
             spaces: Arc::clone(&self.spaces),
-            lists: Arc::default(),
+            lists: Arc::clone(&self.lists),
             repairs: Arc::new(RepairBudget::new(parts)),
             monitor,
         }
