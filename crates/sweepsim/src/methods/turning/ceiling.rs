@@ -259,6 +259,13 @@ impl CeilingSection {
         self.arm(line).0.norm_squared() - self.square
     }
 
+    /// Of the lines of a column.
+    fn values(&self, x: f64, y: &[f64], values: &mut [f64]) {
+        for (value, y) in values.iter_mut().zip(y) {
+            *value = self.value([x, *y]);
+        }
+    }
+
     /// `E′`.
     #[inline]
     fn slope(&self, line: [f64; 2]) -> f64 {
@@ -308,10 +315,15 @@ impl<'a> CeilingSpan<'a> {
         let (Some(is), Some(js)) = (numbers(lattice, 0, self.area[0]), numbers(lattice, 1, self.area[1])) else {
             return;
         };
+        let y: Vec<f64> = (js[0]..=js[1]).map(|j| lattice.coordinate(1, j)).collect();
+        let mut values = [vec![0.0; y.len()], vec![0.0; y.len()]];
         for i in is[0]..=is[1] {
             let x = lattice.coordinate(0, i);
-            for j in js[0]..=js[1] {
-                match self.enters([x, lattice.coordinate(1, j)], first) {
+            for (end, values) in self.ends.iter().zip(&mut values) {
+                end.values(x, &y, values);
+            }
+            for (at, j) in (js[0]..=js[1]).enumerate() {
+                match self.enters([x, y[at]], [values[0][at], values[1][at]], first) {
                     Some(false) => {}
                     Some(true) => counts.put(i, [j, j], 1),
                     None if lattice.asks(i, j) => lines.open(lattice.line(i, j)),
@@ -323,8 +335,7 @@ impl<'a> CeilingSpan<'a> {
 
     /// Whether a line comes under the tool, or is there when the `first` span begins; `None` if that is open.
     #[inline]
-    fn enters(&self, line: [f64; 2], first: bool) -> Option<bool> {
-        let values = [self.ends[0].value(line), self.ends[1].value(line)];
+    fn enters(&self, line: [f64; 2], values: [f64; 2], first: bool) -> Option<bool> {
         if values[0] < -self.doubt {
             return Some(first);
         }

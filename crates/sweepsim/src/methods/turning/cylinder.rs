@@ -15,6 +15,7 @@ mod pivot;
 use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::lean::Lean;
+use super::rim::is_simple;
 use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use super::spans::{Span, Verdict};
 use crate::methods::sheets::around;
@@ -55,6 +56,12 @@ pub(super) struct CylinderLimits {
     turning: f64,
     lean: [f64; 2],
     rise: [f64; 2],
+    /// For the discs at the lower and the upper end of the piece: whether a line that is inside at both ends of a span
+    /// is so all the time, and how far `s ζ − q` may be from its chord.
+    closed: [bool; 2],
+    behind: [f64; 2],
+    /// The error of the square of a radius.
+    close: f64,
 }
 
 impl Cylinder {
@@ -66,7 +73,8 @@ impl Cylinder {
     /// The bound of `|δ″|` and `|q″|` for lines over the span.
     fn bow(&self, bounds: &Bounds) -> f64 {
         let [swing, change] = bounds.swing;
-        let reach = self.reach() + (bounds.speed + bounds.rate * self.reach()) * bounds.length;
+        let far = self.ends[0].abs().max(self.ends[1].abs());
+        let reach = self.radius + far * bounds.lean[1] + bounds.speed * bounds.length;
         (swing * swing + change) * reach + 2.0 * swing * bounds.speed
     }
 
@@ -113,6 +121,12 @@ impl Cylinder {
             turning: bounds.turning(),
             lean: bounds.lean,
             rise: bounds.rise,
+            closed: self.ends.map(|end| is_simple([self.radius, end], [from, to], bounds)),
+            behind: self.ends.map(|end| {
+                let leans = bounds.bend + bounds.rate * bounds.rate / bounds.lean[0];
+                bounds.sag(self.bow(bounds) + end.abs() * leans) + 16.0 * slack
+            }),
+            close: 32.0 * slack * self.radius,
         })
     }
 
@@ -238,6 +252,9 @@ impl Shell for Cylinder {
             turning: 0.0,
             lean: [s; 2],
             rise: [k; 2],
+            closed: [true; 2],
+            behind: [16.0 * slack; 2],
+            close: 32.0 * slack * self.radius,
         };
         (s > LEANING).then_some((pose, limits))
     }
@@ -315,6 +332,23 @@ impl Shell for Cylinder {
             }
         };
         [sign(0), sign(1)]
+    }
+
+    #[inline]
+    fn is_beyond(&self, limits: &CylinderLimits, ends: [(&Lean, &Meeting); 2], sheet: usize) -> bool {
+        let side = if sheet == 0 { 1.0 } else { -1.0 };
+        let ahead = |at: &Lean, meeting: &Meeting| at.tilt[0] * self.ends[sheet] - meeting.place[0];
+        let is_in_disc = |at: &Lean, meeting: &Meeting| {
+            let (across, k) = (meeting.place[1], at.tilt[1]);
+            let square = k * k * (self.radius - across) * (self.radius + across);
+            ahead(at, meeting).powi(2) + limits.close < square
+        };
+        // `s ζ = q + k α`, with `α < 0` on the lower sheet.
+        limits.rise[0] > 0.0
+            && (ends
+                .iter()
+                .all(|(at, meeting)| side * ahead(at, meeting) > limits.behind[sheet])
+                || limits.closed[sheet] && ends.iter().all(|(at, meeting)| is_in_disc(at, meeting)))
     }
 
     fn doubtful(&self, limits: &CylinderLimits, meeting: &Meeting, sheet: usize) -> bool {
