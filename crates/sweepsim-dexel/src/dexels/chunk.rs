@@ -49,6 +49,11 @@ impl Chunk {
         self.pieces.len()
     }
 
+    /// The number of lines with material.
+    pub fn covered(&self) -> usize {
+        self.first.windows(2).filter(|ends| ends[0] < ends[1]).count()
+    }
+
     /// Stored intervals of a line.
     pub fn line(&self, line: usize) -> &[PackedInterval] {
         &self.pieces[self.first[line] as usize..self.first[line + 1] as usize]
@@ -79,10 +84,8 @@ impl Chunk {
 
     /// Appends packed intervals to `out`, their moves to the table.
     pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<PackedInterval>) {
-        for interval in intervals {
-            self.make_room(2, out);
-            out.push(self.moves.interval(interval));
-        }
+        self.make_room(2 * intervals.len(), out);
+        out.extend(intervals.iter().map(|interval| self.moves.interval(interval)));
     }
 
     /// Appends stored intervals of another chunk to `out`, their moves to the table. `numbers` is memory.
@@ -128,13 +131,18 @@ impl Chunk {
 
     /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds
     /// intervals that are not in the chunk yet.
+    #[inline]
     fn make_room(&mut self, more: usize, out: &mut [PackedInterval]) {
-        let full = |moves: &SegmentTable| moves.moves.len() + more > 1 << (32 - moves.time);
         let wasteful = self.moves.moves.len() > 64 + 4 * (self.pieces.len() + out.len());
-        if wasteful || full(&self.moves) {
-            self.tidy(out);
+        if wasteful || self.moves.is_full(more) {
+            self.make_more_room(more, out);
         }
-        while full(&self.moves) && self.moves.time > LEAST_TIME {
+    }
+
+    #[cold]
+    fn make_more_room(&mut self, more: usize, out: &mut [PackedInterval]) {
+        self.tidy(out);
+        while self.moves.is_full(more) && self.moves.time > LEAST_TIME {
             let time = self.moves.time;
             for_sources(&mut self.pieces, out, |source| {
                 if *source != Packed::STOCK {
