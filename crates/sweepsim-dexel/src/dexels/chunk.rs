@@ -131,18 +131,13 @@ impl Chunk {
 
     /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds
     /// intervals that are not in the chunk yet.
-    #[inline]
     fn make_room(&mut self, more: usize, out: &mut [PackedInterval]) {
+        let full = |moves: &SegmentTable| moves.moves.len() + more > 1 << (32 - moves.time);
         let wasteful = self.moves.moves.len() > 64 + 4 * (self.pieces.len() + out.len());
-        if wasteful || self.moves.is_full(more) {
-            self.make_more_room(more, out);
+        if wasteful || full(&self.moves) {
+            self.tidy(out);
         }
-    }
-
-    #[cold]
-    fn make_more_room(&mut self, more: usize, out: &mut [PackedInterval]) {
-        self.tidy(out);
-        while self.moves.is_full(more) && self.moves.time > LEAST_TIME {
+        while full(&self.moves) && self.moves.time > LEAST_TIME {
             let time = self.moves.time;
             for_sources(&mut self.pieces, out, |source| {
                 if *source != Packed::STOCK {

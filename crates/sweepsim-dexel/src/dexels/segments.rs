@@ -89,12 +89,6 @@ impl SegmentTable {
         }
     }
 
-    /// Whether so many more moves would leave times fewer bits.
-    #[inline]
-    pub(super) fn is_full(&self, more: usize) -> bool {
-        self.moves.len() + more > 1 << (32 - self.time)
-    }
-
     #[inline]
     pub(super) fn number(&mut self, wanted: CutSegment) -> u32 {
         // Neighbouring lines are often cut by one move.

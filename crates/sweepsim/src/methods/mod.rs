@@ -3,7 +3,6 @@
 //! All of them solve the same equations: [`search`] sets them up as maps of [`envelope`](crate::envelope), and passes each map to a
 //! [`CrossingMethod`](method::CrossingMethod). A method only determines how the preimages of the lines are found; their meaning is the same for all.
 
-pub(crate) mod ceiling;
 pub(crate) mod charts;
 pub(crate) mod harvest;
 pub(crate) mod lattice;

@@ -1,13 +1,15 @@
 //! The equations of a stretch of path, and the meaning of their solutions: the crossings of dexel lines with the envelope, the edges, the kinks and the
 //! two caps.
 
+mod ceiling;
 pub(super) mod placement;
+
+pub(crate) use ceiling::Ceiling;
 
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::cutter::outline::Outline;
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, PatchMap, ROOT, Size};
-use crate::methods::ceiling::Ceiling;
 use crate::methods::harvest::{Collector, Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;

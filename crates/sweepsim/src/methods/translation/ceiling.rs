@@ -10,9 +10,8 @@
 use super::curves::stands;
 use super::discs::Around;
 use crate::cutter::outline::{Outline, Shape};
-use crate::methods::ceiling::Counts;
 use crate::methods::harvest::Collector;
-use crate::methods::sheets::numbers;
+use crate::methods::sheets::{Counts, numbers};
 use crate::time::path_parts::PathPart;
 
 /// How far the ceiling is from material and from the ends of the cone or cylinder, at least, in reaches of the tool.

@@ -17,8 +17,8 @@ mod span;
 
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use crate::cutter::outline::{Ball, Outline, Piece, Shape};
-use crate::methods::ceiling::Counts;
 use crate::methods::harvest::Collector;
+use crate::methods::sheets::Counts;
 use crate::methods::translation::GAP;
 use crate::time::path_parts::{PartKind, PathPart};
 use span::CeilingSpan;

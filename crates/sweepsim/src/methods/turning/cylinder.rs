@@ -20,7 +20,7 @@ use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use super::spans::{Span, Verdict};
 use crate::methods::sheets::around;
 use crate::methods::sheets::intervals::{
-    Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
+    Range, Sign, add, between, divided, joined, mul, shared, square, square_root, sub, wider,
 };
 use nalgebra::Vector3;
 
@@ -162,45 +162,6 @@ impl Cylinder {
         };
         let across = [across(0), across(1)];
         (add(mul(alpha, across[0]), mul(delta, across[1])), across)
-    }
-
-    /// Whether `G` falls where it may rise at heights in a zone.
-    fn falls_near(
-        &self,
-        zone: [f64; 2],
-        limits: &CylinderLimits,
-        [(from, a), (to, b)]: [(&Lean, &Meeting); 2],
-        length: f64,
-        sheet: usize,
-    ) -> Falls {
-        let sag = 0.125 * limits.bow * length * length;
-        let place = |k: usize| wider(hull(a.place[k], b.place[k]), sag);
-        let Some([alpha, delta, zeta]) = self.ranges(limits, [place(0), place(1)], sheet) else {
-            return Falls::Beyond;
-        };
-        if zeta[1] < zone[0] || zeta[0] > zone[1] {
-            return Falls::Always;
-        }
-        let poses = [from, to];
-        let (g, across) = Self::rates(limits, poses, length, [alpha, delta, zeta]);
-        if Sign::of(g, limits.doubt / self.radius) != Sign::Unknown {
-            return Falls::Always;
-        }
-        let rate = |k: usize| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length);
-        let tau = between(poses[0].travel[2], poses[1].travel[2], limits.travel * length);
-        let around = sub(mul(alpha, across[1]), mul(delta, across[0]));
-        let x = add(mul(alpha, rate(0)), mul(delta, rate(1)));
-        let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
-        let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
-        let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
-        // NaN is unknown.
-        if slope[1] < 0.0 {
-            Falls::Always
-        } else if slope[0] > 0.0 {
-            Falls::Never
-        } else {
-            Falls::Unknown
-        }
     }
 }
 

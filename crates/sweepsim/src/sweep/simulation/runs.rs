@@ -3,8 +3,8 @@
 //! What a tool that stands along the lines does with its lowest point above all material is left out, also of moves that dive into it.
 
 use super::heights::{Box3, HeightMap, window};
-use crate::methods::ceiling::Ceiling;
 use crate::methods::lattice::LineMask;
+use crate::methods::search::Ceiling;
 use crate::methods::translation::{GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;

@@ -1,9 +1,8 @@
 //! One span of time in which each line is covered once at most.
 
 use super::LeaningCeiling;
-use crate::methods::ceiling::Counts;
 use crate::methods::harvest::Collector;
-use crate::methods::sheets::{around, numbers};
+use crate::methods::sheets::{Counts, around, numbers};
 use crate::methods::turning::axis_motion::{AxisMotion, Moment};
 use nalgebra::Vector3;
 

@@ -1,5 +1,4 @@
 use super::*;
-use crate::methods::ceiling::Ceiling;
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
 use std::collections::BTreeMap;
@@ -53,7 +52,8 @@ proptest! {
         let lattice = Lattice::all(&grid, [1e-9; 2]);
         let mut harvest = Harvest::default();
         let mut collector = Collector { lines: &lattice, harvest: &mut harvest };
-        Ceiling::Leaning(own.clone()).close(&parts, 1e-12, &mut collector);
+        let counts = own.counts(&parts, 1e-12, &mut collector).expect("some lines");
+        counts.close(own.z, &mut collector);
         let mut found: BTreeMap<u32, i32> = BTreeMap::new();
         for (line, crossing) in &harvest.crossings {
             *found.entry(*line).or_default() -= i32::from(crossing.jump);
