@@ -49,6 +49,11 @@ impl Chunk {
         self.pieces.len()
     }
 
+    /// The number of lines with material.
+    pub fn covered(&self) -> usize {
+        self.first.windows(2).filter(|ends| ends[0] < ends[1]).count()
+    }
+
     /// Stored intervals of a line.
     pub fn line(&self, line: usize) -> &[PackedInterval] {
         &self.pieces[self.first[line] as usize..self.first[line + 1] as usize]
@@ -79,10 +84,8 @@ impl Chunk {
 
     /// Appends packed intervals to `out`, their moves to the table.
     pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<PackedInterval>) {
-        for interval in intervals {
-            self.make_room(2, out);
-            out.push(self.moves.interval(interval));
-        }
+        self.make_room(2 * intervals.len(), out);
+        out.extend(intervals.iter().map(|interval| self.moves.interval(interval)));
     }
 
     /// Appends stored intervals of another chunk to `out`, their moves to the table. `numbers` is memory.

@@ -355,7 +355,7 @@ impl Dexels {
     /// The number of lines with material.
     #[must_use]
     pub fn covered(&self) -> usize {
-        self.iter().count()
+        self.chunks.iter().flatten().map(|chunk| chunk.covered()).sum()
     }
 
     /// The number of intervals.

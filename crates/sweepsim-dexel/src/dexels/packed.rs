@@ -49,6 +49,10 @@ impl Octahedral {
     /// The nearest direction, or nearly so. A zero or non-finite vector is taken as up.
     #[inline]
     pub fn new(normal: [f32; 3]) -> Self {
+        // Of every other end.
+        if normal == [0.0, 0.0, 1.0] {
+            return Self([0, 0]);
+        }
         let n = normal.map(f64::from);
         let size = n.iter().map(|c| c.abs()).sum::<f64>();
         if !(size > 0.0 && size.is_finite()) {

@@ -1,7 +1,10 @@
 //! The equations of a stretch of path, and the meaning of their solutions: the crossings of dexel lines with the envelope, the edges, the kinks and the
 //! two caps.
 
+mod ceiling;
 pub(super) mod placement;
+
+pub(crate) use ceiling::Ceiling;
 
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
@@ -11,7 +14,7 @@ use crate::methods::harvest::{Collector, Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
-use crate::methods::translation::{self, Ceiling, Grazed, Heading, Patches};
+use crate::methods::translation::{self, Grazed, Heading, Patches};
 use crate::methods::turning::{self, Accuracy, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::over::{DyadicInterval, Over, comes_near};
@@ -83,7 +86,7 @@ impl Search<'_> {
             self.placed(method, (at, SegmentEnd::Finish), space, harvest);
         }
         if let Some(ceiling) = self.ceiling {
-            harvest.keep_below(mark, ceiling.z, self.height_tolerance);
+            harvest.keep_below(mark, ceiling.z(), self.height_tolerance);
         }
         harvest.count(&space.solvers.take_statistics());
     }
@@ -99,7 +102,7 @@ impl Search<'_> {
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let by_share = |share: f64| self.source_after(at, share);
-        let collector = (&mut collector, self.ceiling);
+        let collector = (&mut collector, self.highest(at));
         let rounding = self.size.system_rounding;
         match &part.kind {
             PartKind::VerticalArc(arc) => {
@@ -120,6 +123,28 @@ impl Search<'_> {
         }
     }
 
+    /// What is this high above the tip is above the ceiling all along a part.
+    fn highest(&self, at: usize) -> f64 {
+        let part = &self.parts[at];
+        let lowest = match part.vertical_arc() {
+            Some(arc) => arc.heights()[0],
+            None => part
+                .segment
+                .tips()
+                .map(|tip| tip[2])
+                .into_iter()
+                .fold(f64::INFINITY, f64::min),
+        };
+        self.above(at, lowest)
+    }
+
+    /// The same where the tip is no lower than this.
+    fn above(&self, at: usize, tip: f64) -> f64 {
+        let spacing = self.lines.spacing();
+        self.ceiling
+            .map_or(f64::INFINITY, |ceiling| ceiling.above(at, tip, spacing))
+    }
+
     /// Settles the patches that have no closed form along a move without rotation.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let mut grazed = Grazed {
@@ -128,7 +153,7 @@ impl Search<'_> {
                 lines: self.lines,
                 harvest,
             },
-            ceiling: self.ceiling,
+            highest: self.highest(at),
             system_rounding: self.size.system_rounding,
             height_tolerance: self.height_tolerance,
             last: space.solvers.moving.options.accept,
@@ -158,7 +183,8 @@ impl Search<'_> {
         let mut searching = self.searching(&mut collector);
         let settled = [&mut space.done.patches[..], &mut space.done.edges[..]];
         let source = |t: f64| self.source(at, t);
-        turning::envelope(outline, &self.parts[at].segment, &mut searching, source, settled)
+        let moving = (&self.parts[at].segment, self.highest(at));
+        turning::envelope(outline, moving, &mut searching, source, settled)
     }
 
     pub(super) fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {

@@ -5,7 +5,7 @@ use crate::error::SweepError;
 use crate::methods::translation::GAP;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::short_tools::ShortTools;
-use crate::sweep::spare::Spaces;
+use crate::sweep::spare::{Spaces, SpareLists};
 use crate::time::path_parts::{self, Kind, PathPart};
 use crate::tolerances::Tolerances;
 use std::ops::Range;
@@ -21,6 +21,7 @@ pub(crate) struct Plan {
     pub parts: Vec<PathPart>,
     pub tolerances: Tolerances,
     pub spaces: Spaces,
+    pub lists: SpareLists,
     /// The largest coordinate of tool, lines and path.
     size: f64,
 }
@@ -64,6 +65,7 @@ impl Plan {
         let plan = Self::prepared(prepared, (tool, path, 0..path.moves()), frame, size, options)?;
         Ok(Self {
             spaces: Arc::clone(&self.spaces),
+            lists: Arc::clone(&self.lists),
             ..plan
         })
     }
@@ -88,6 +90,7 @@ impl Plan {
             short,
             tolerances,
             spaces: Spaces::default(),
+            lists: SpareLists::default(),
             size,
         })
     }

@@ -12,9 +12,8 @@ use crate::methods::lattice::LineMask;
 use crate::methods::lines::Lines;
 use crate::methods::method::CrossingMethod;
 use crate::methods::planes::Planes;
-use crate::methods::search::Search;
+use crate::methods::search::{Ceiling, Search};
 use crate::methods::surface::Surfaces;
-use crate::methods::translation::{self, Ceiling};
 use crate::methods::workspace::Workspace;
 use crate::repair_budget::RepairBudget;
 use crate::sweep::boundary_operator::BoundaryOperator;
@@ -64,7 +63,7 @@ impl Plan {
                 system_rounding: self.tolerances.rounding(),
             },
             spaces: Arc::clone(&self.spaces),
-            lists: Arc::default(),
+            lists: Arc::clone(&self.lists),
             repairs: Arc::new(RepairBudget::new(parts)),
             monitor,
         }
@@ -231,7 +230,7 @@ impl SweepJob<'_> {
                 lines: &lines,
                 harvest: &mut harvest,
             };
-            translation::close(ceiling, chunk, self.size.system_rounding, &mut collector);
+            ceiling.close(chunk, self.size.system_rounding, &mut collector);
             all.add(harvest);
         }
         Ok(all)

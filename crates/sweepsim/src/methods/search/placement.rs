@@ -73,11 +73,12 @@ impl Search<'_> {
         let done = &mut space.done.placed;
         let part = &self.parts[at];
         if translation::stands(part) {
-            let collector = (&mut collector, self.ceiling);
+            let collector = (&mut collector, self.above(at, tip[2]));
             translation::placements(outline, (tip, slack), sides, collector, source, done);
         } else {
             let place = (&part.segment.start(), tip, slack);
-            translation::leaning(outline, place, sides, &mut collector, source, done);
+            let collector = (&mut collector, self.above(at, tip[2]));
+            translation::leaning(outline, place, sides, collector, source, done);
         }
     }
 
@@ -100,7 +101,14 @@ impl Search<'_> {
             harvest,
         };
         let mut searching = self.searching(&mut collector);
-        turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
+        let highest = self.highest(at);
+        turning::placement(
+            (outline, highest),
+            sides,
+            source,
+            &mut searching,
+            &mut space.done.placed,
+        );
     }
 
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.

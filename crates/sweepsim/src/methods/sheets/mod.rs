@@ -4,10 +4,12 @@
 //! ([`newton`]).
 
 mod blocks;
+mod counts;
 pub(crate) mod intervals;
 mod newton;
 
 pub(crate) use blocks::{around, distance, numbers, search_lines};
+pub(crate) use counts::Counts;
 pub(crate) use newton::{STEPS, halfway, middle, newton};
 
 /// What is not decided about a line.

@@ -1,4 +1,4 @@
-//! A height above all material: what the tool sweeps above it is not searched for crossings, only counted.
+//! The ceiling of a tool that stands along the lines.
 //!
 //! Over a line, the coverage count at the ceiling is the number of components of the times at which the tool covers the point at that height. At a
 //! height at which a tool that stands along the lines is a cone or a cylinder, its section is a disc whose radius is linear in the time of a move: it covers a
@@ -7,28 +7,26 @@
 //!
 //! The jumps below the ceiling must add up to this number, which is as independent of them as the crossings above would be.
 
-use super::curves::{slack, stands};
+use super::curves::stands;
 use super::discs::Around;
 use crate::cutter::outline::{Outline, Shape};
 use crate::methods::harvest::Collector;
-use crate::methods::lattice::Lattice;
-use crate::methods::sheets::numbers;
+use crate::methods::sheets::{Counts, numbers};
 use crate::time::path_parts::PathPart;
-use sweepsim_dexel::Source;
 
 /// How far the ceiling is from material and from the ends of the cone or cylinder, at least, in reaches of the tool.
 pub(crate) const GAP: f64 = 1e-3;
 
 /// A height above all material, at which the tool is a cone or a cylinder along some moves.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ceiling {
+pub(crate) struct UprightCeiling {
     pub z: f64,
     /// The tool's radius at the height `ζ` above its tip is `base + rate ζ`.
     base: f64,
     rate: f64,
 }
 
-impl Ceiling {
+impl UprightCeiling {
     /// The lowest one for these moves, if there is any. `top`: the highest material.
     pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
         let forwards = |part: &PathPart| {
@@ -94,11 +92,6 @@ impl Ceiling {
             radius: a,
             doubt: 4.0 * slack + (b - a).abs(),
         })
-    }
-
-    /// The largest height above the tip that matters, for a tip no lower than this.
-    pub fn above(&self, tip: f64, gap: f64) -> f64 {
-        self.z - tip + gap
     }
 
     fn disc(&self, [x, y, z]: [f64; 3]) -> Disc {
@@ -174,10 +167,6 @@ impl Capsule {
         }
     }
 
-    fn columns(&self) -> [f64; 2] {
-        self.extent(0)
-    }
-
     fn extent(&self, k: usize) -> [f64; 2] {
         let [a, b] = &self.ends;
         [
@@ -231,88 +220,57 @@ impl Capsule {
     }
 }
 
-/// The counts of the lines of a window.
-struct Counts {
-    first: [usize; 2],
-    width: usize,
-    /// By how much the count grows from one line of a column to the next.
-    steps: Vec<i32>,
-}
-
-/// Adds a crossing at the ceiling to each line that is covered there, which takes the count back to 0.
-pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], system_rounding: f64, lines: &mut Collector) {
-    let slack = slack(system_rounding);
-    let tips = |part: &PathPart| part.segment.tips().map(|tip| ceiling.disc(tip));
-    let around: Vec<Around> = parts.iter().filter_map(|part| ceiling.around(part, slack)).collect();
-    let moves: Vec<Capsule> = parts
-        .iter()
-        .filter(|part| part.level_arc().is_none())
-        .map(|part| {
-            let [a, b] = tips(part);
-            Capsule::new(a, b)
-        })
-        .collect();
-    let joints = parts.iter().skip(1).map(|part| {
-        let [a, _] = tips(part);
-        Capsule::new(a, a)
-    });
-    let lattice = lines.lines;
-    let hull = |k: usize| {
-        let straight = moves.iter().map(|capsule| capsule.extent(k));
-        let ranges = straight.chain(around.iter().map(|disc| disc.extent(k)));
-        let whole = ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
-            [a[0].min(b[0]), a[1].max(b[1])]
+impl UprightCeiling {
+    /// How often the lines are covered; those closer than rounding to an end of that are open.
+    pub fn counts(&self, parts: &[PathPart], slack: f64, lines: &mut Collector) -> Option<Counts> {
+        let tips = |part: &PathPart| part.segment.tips().map(|tip| self.disc(tip));
+        let around: Vec<Around> = parts.iter().filter_map(|part| self.around(part, slack)).collect();
+        let moves: Vec<Capsule> = parts
+            .iter()
+            .filter(|part| part.level_arc().is_none())
+            .map(|part| {
+                let [a, b] = tips(part);
+                Capsule::new(a, b)
+            })
+            .collect();
+        let joints = parts.iter().skip(1).map(|part| {
+            let [a, _] = tips(part);
+            Capsule::new(a, a)
         });
-        numbers(lattice, k, [whole[0] - slack, whole[1] + slack])
-    };
-    let (Some(is), Some(js)) = (hull(0), hull(1)) else {
-        return;
-    };
-    let width = js[1] - js[0] + 2;
-    let mut counts = Counts {
-        first: [is[0], js[0]],
-        width,
-        steps: vec![0; (is[1] - is[0] + 1) * width],
-    };
-    for capsule in &moves {
-        counts.add(lattice, capsule, 1, slack, lines);
-    }
-    for disc in &around {
-        disc.each(lines, |i, j, count| counts.put(i, [j, j], count));
-    }
-    for capsule in joints {
-        counts.add(lattice, &capsule, -1, slack, lines);
-    }
-    for (column, steps) in counts.steps.chunks_exact(width).enumerate() {
-        let mut count = 0;
-        for (row, step) in steps[..width - 1].iter().enumerate() {
-            count += step;
-            let (i, j) = (is[0] + column, js[0] + row);
-            if count != 0 && lattice.asks(i, j) {
-                let line = lattice.line(i, j);
-                // A jump has one byte. What is below 0 fails its audit.
-                let mut left = -count;
-                while left != 0 {
-                    let jump = left.clamp(-100, 100);
-                    lines.crossing(line, ceiling.z, jump as i8, [0.0, 0.0, 1.0], Source::Stock);
-                    left -= jump;
-                }
-            }
+        let hull = |k: usize| {
+            let straight = moves.iter().map(|capsule| capsule.extent(k));
+            let ranges = straight.chain(around.iter().map(|disc| disc.extent(k)));
+            let whole = ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
+                [a[0].min(b[0]), a[1].max(b[1])]
+            });
+            [whole[0] - slack, whole[1] + slack]
+        };
+        let mut counts = Counts::over(lines.lines, [hull(0), hull(1)])?;
+        for capsule in &moves {
+            capsule.add(1, slack, (&mut counts, lines));
         }
+        for disc in &around {
+            disc.each(lines, |i, j, count| counts.put(i, [j, j], count));
+        }
+        for capsule in joints {
+            capsule.add(-1, slack, (&mut counts, lines));
+        }
+        Some(counts)
     }
 }
 
-impl Counts {
+impl Capsule {
     /// Counts the lines in a capsule once; those at its boundary are open.
-    fn add(&mut self, lattice: &Lattice, capsule: &Capsule, by: i32, slack: f64, lines: &mut Collector) {
-        let [low, high] = capsule.columns();
+    fn add(&self, by: i32, slack: f64, (counts, lines): (&mut Counts, &mut Collector)) {
+        let lattice = lines.lines;
+        let [low, high] = self.extent(0);
         let Some(is) = numbers(lattice, 0, [low - slack, high + slack]) else {
             return;
         };
         let around = lattice.grid.spacing()[1];
         for i in is[0]..=is[1] {
             let x = lattice.coordinate(0, i);
-            let Some([[from, to], off]) = capsule.crossed(x, slack) else {
+            let Some([[from, to], off]) = self.crossed(x, slack) else {
                 continue;
             };
             // Where no line is close to the ends, those between them need no look. Columns close to the outermost points may be close to the boundary everywhere.
@@ -322,7 +280,7 @@ impl Counts {
                 let sure = numbers(lattice, 1, [from + close[0], to - close[1]]);
                 if sure == numbers(lattice, 1, [from - close[0], to + close[1]]) {
                     if let Some(range) = sure {
-                        self.put(i, range, by);
+                        counts.put(i, range, by);
                     }
                     continue;
                 }
@@ -332,7 +290,7 @@ impl Counts {
             };
             // A convex set: from the ends inwards.
             let mut outside = |j: usize| {
-                let distance = capsule.distance(x, lattice.coordinate(1, j));
+                let distance = self.distance(x, lattice.coordinate(1, j));
                 let near = !(distance.abs() > slack);
                 if near && lattice.asks(i, j) {
                     lines.open(lattice.line(i, j));
@@ -346,16 +304,8 @@ impl Counts {
                 b -= 1;
             }
             if a <= b {
-                self.put(i, [a, b], by);
+                counts.put(i, [a, b], by);
             }
         }
-    }
-
-    /// Adds to the counts of some lines of a column.
-    fn put(&mut self, i: usize, [a, b]: [usize; 2], by: i32) {
-        let at = (i - self.first[0]) * self.width;
-        let clamp = |j: usize| j.max(self.first[1]) - self.first[1];
-        self.steps[at + clamp(a)] += by;
-        self.steps[at + (clamp(b) + 1).min(self.width - 1)] -= by;
     }
 }

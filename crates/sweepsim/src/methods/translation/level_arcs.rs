@@ -13,7 +13,6 @@
 
 mod ends;
 
-use super::Ceiling;
 use super::arc_place::ArcPlace;
 use super::curves::{Beside, Graph, Heading, Parabola, Turned, TurnedPoint, ring, slant, torus};
 use super::rows::{Row, Sector};
@@ -35,17 +34,14 @@ const BLUR: f64 = 1e-3;
 pub(crate) fn sweep_level_arc(
     outline: &Outline,
     (heading, arc): (&Heading, &LevelArc),
-    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
+    (lines, highest): (&mut Collector, f64),
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
     let mut search = LevelArcSearch {
         heading,
         arc,
-        highest: ceiling.map_or(f64::INFINITY, |ceiling| {
-            let lowest = heading.tip[2].min(heading.tip[2] + heading.way[2]);
-            ceiling.above(lowest, lines.lines.spacing())
-        }),
+        highest,
         lines,
         source,
         side: arc.side(),

@@ -21,7 +21,7 @@ mod straight;
 mod vertical_arcs;
 
 pub(crate) use at_rest::{Neighbour, leaning, placements};
-pub(crate) use ceiling::{Ceiling, GAP, close};
+pub(crate) use ceiling::{GAP, UprightCeiling};
 pub(crate) use curves::{Heading, slack, stands};
 pub(crate) use grazing::{Grazed, Grazing, Patches};
 pub(crate) use level_arcs::sweep_level_arc;

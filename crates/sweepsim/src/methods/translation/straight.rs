@@ -2,7 +2,6 @@
 
 mod lanes;
 
-use super::Ceiling;
 use super::curves::{Graph, Heading, ring, slant, torus};
 use super::rows::{Floor, Row, rows};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
@@ -22,23 +21,18 @@ const LINES: f64 = 6.0;
 pub(crate) fn sweep_straight(
     outline: &Outline,
     heading: &Heading,
-    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
+    (lines, highest): (&mut Collector, f64),
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
     let mut strip = Strip {
         heading,
+        spacing: lines.lines.spacing(),
         lines,
         source,
-        spacing: 0.0,
-        highest: f64::INFINITY,
+        highest,
         lanes: Lanes::default(),
     };
-    strip.spacing = strip.lines.lines.spacing();
-    if let Some(ceiling) = ceiling {
-        let lowest = heading.tip[2].min(heading.tip[2] + heading.way[2]);
-        strip.highest = ceiling.above(lowest, strip.spacing);
-    }
     outline.settle(&mut strip, Strip::piece, Strip::rim, done);
 }
 

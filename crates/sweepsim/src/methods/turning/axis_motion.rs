@@ -63,6 +63,20 @@ impl AxisMotion {
         })
     }
 
+    /// The same of a motion without a turn.
+    pub fn still(segment: &Segment) -> Option<Self> {
+        let ([turn], [weight]) = (segment.turns(), segment.weights()) else {
+            return None;
+        };
+        segment.is_arc().then(|| Self {
+            axis: [turn.column(2) / *weight; 3],
+            weights: [1.0; 3],
+            spin: Vector3::zeros(),
+            tip: segment.tips()[0].into(),
+            velocity: segment.travel().into(),
+        })
+    }
+
     /// The axis, `κ k/w` and `w′/w`.
     #[inline]
     pub fn axis(&self, t: f64) -> (Vector3<f64>, Vector3<f64>, f64) {

@@ -15,11 +15,12 @@ mod pivot;
 use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::lean::Lean;
+use super::rim::is_simple;
 use super::shell::{Falls, Meeting, Passage, Shell, ShellPoint};
 use super::spans::{Span, Verdict};
 use crate::methods::sheets::around;
 use crate::methods::sheets::intervals::{
-    Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
+    Range, Sign, add, between, divided, joined, mul, shared, square, square_root, sub, wider,
 };
 use nalgebra::Vector3;
 
@@ -55,6 +56,12 @@ pub(super) struct CylinderLimits {
     turning: f64,
     lean: [f64; 2],
     rise: [f64; 2],
+    /// For the discs at the lower and the upper end of the piece: whether a line that is inside at both ends of a span
+    /// is so all the time, and how far `s ζ − q` may be from its chord.
+    closed: [bool; 2],
+    behind: [f64; 2],
+    /// The error of the square of a radius.
+    close: f64,
 }
 
 impl Cylinder {
@@ -66,7 +73,8 @@ impl Cylinder {
     /// The bound of `|δ″|` and `|q″|` for lines over the span.
     fn bow(&self, bounds: &Bounds) -> f64 {
         let [swing, change] = bounds.swing;
-        let reach = self.reach() + (bounds.speed + bounds.rate * self.reach()) * bounds.length;
+        let far = self.ends[0].abs().max(self.ends[1].abs());
+        let reach = self.radius + far * bounds.lean[1] + bounds.speed * bounds.length;
         (swing * swing + change) * reach + 2.0 * swing * bounds.speed
     }
 
@@ -113,6 +121,12 @@ impl Cylinder {
             turning: bounds.turning(),
             lean: bounds.lean,
             rise: bounds.rise,
+            closed: self.ends.map(|end| is_simple([self.radius, end], [from, to], bounds)),
+            behind: self.ends.map(|end| {
+                let leans = bounds.bend + bounds.rate * bounds.rate / bounds.lean[0];
+                bounds.sag(self.bow(bounds) + end.abs() * leans) + 16.0 * slack
+            }),
+            close: 32.0 * slack * self.radius,
         })
     }
 
@@ -148,45 +162,6 @@ impl Cylinder {
         };
         let across = [across(0), across(1)];
         (add(mul(alpha, across[0]), mul(delta, across[1])), across)
-    }
-
-    /// Whether `G` falls where it may rise at heights in a zone.
-    fn falls_near(
-        &self,
-        zone: [f64; 2],
-        limits: &CylinderLimits,
-        [(from, a), (to, b)]: [(&Lean, &Meeting); 2],
-        length: f64,
-        sheet: usize,
-    ) -> Falls {
-        let sag = 0.125 * limits.bow * length * length;
-        let place = |k: usize| wider(hull(a.place[k], b.place[k]), sag);
-        let Some([alpha, delta, zeta]) = self.ranges(limits, [place(0), place(1)], sheet) else {
-            return Falls::Beyond;
-        };
-        if zeta[1] < zone[0] || zeta[0] > zone[1] {
-            return Falls::Always;
-        }
-        let poses = [from, to];
-        let (g, across) = Self::rates(limits, poses, length, [alpha, delta, zeta]);
-        if Sign::of(g, limits.doubt / self.radius) != Sign::Unknown {
-            return Falls::Always;
-        }
-        let rate = |k: usize| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length);
-        let tau = between(poses[0].travel[2], poses[1].travel[2], limits.travel * length);
-        let around = sub(mul(alpha, across[1]), mul(delta, across[0]));
-        let x = add(mul(alpha, rate(0)), mul(delta, rate(1)));
-        let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
-        let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
-        let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
-        // NaN is unknown.
-        if slope[1] < 0.0 {
-            Falls::Always
-        } else if slope[0] > 0.0 {
-            Falls::Never
-        } else {
-            Falls::Unknown
-        }
     }
 }
 
@@ -238,6 +213,9 @@ impl Shell for Cylinder {
             turning: 0.0,
             lean: [s; 2],
             rise: [k; 2],
+            closed: [true; 2],
+            behind: [16.0 * slack; 2],
+            close: 32.0 * slack * self.radius,
         };
         (s > LEANING).then_some((pose, limits))
     }
@@ -315,6 +293,23 @@ impl Shell for Cylinder {
             }
         };
         [sign(0), sign(1)]
+    }
+
+    #[inline]
+    fn is_beyond(&self, limits: &CylinderLimits, ends: [(&Lean, &Meeting); 2], sheet: usize) -> bool {
+        let side = if sheet == 0 { 1.0 } else { -1.0 };
+        let ahead = |at: &Lean, meeting: &Meeting| at.tilt[0] * self.ends[sheet] - meeting.place[0];
+        let is_in_disc = |at: &Lean, meeting: &Meeting| {
+            let (across, k) = (meeting.place[1], at.tilt[1]);
+            let square = k * k * (self.radius - across) * (self.radius + across);
+            ahead(at, meeting).powi(2) + limits.close < square
+        };
+        // `s ζ = q + k α`, with `α < 0` on the lower sheet.
+        limits.rise[0] > 0.0
+            && (ends
+                .iter()
+                .all(|(at, meeting)| side * ahead(at, meeting) > limits.behind[sheet])
+                || limits.closed[sheet] && ends.iter().all(|(at, meeting)| is_in_disc(at, meeting)))
     }
 
     fn doubtful(&self, limits: &CylinderLimits, meeting: &Meeting, sheet: usize) -> bool {

@@ -9,6 +9,7 @@
 
 mod axis_motion;
 mod ball;
+mod ceiling;
 mod cylinder;
 mod disc;
 mod lean;
@@ -21,6 +22,7 @@ mod zero;
 use crate::cutter::outline::{Ball, Outline, Piece, Rim, Shape};
 use crate::methods::harvest::Collector;
 use axis_motion::{AxisMotion, Moment};
+pub(crate) use ceiling::LeaningCeiling;
 use cylinder::Cylinder;
 use disc::Disc;
 use resting::{Resting, RestingSide};
@@ -78,7 +80,8 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(piece: &Piece) -> Option<Self> {
+    /// Of a piece as far as it is below a height.
+    fn of(piece: &Piece, highest: f64) -> Option<Self> {
         let heights = [piece.from[1].min(piece.to[1]), piece.from[1].max(piece.to[1])];
         match piece.shape {
             Shape::Line { normal: [0.0, up] } => Some(Self::Disc(Disc {
@@ -88,7 +91,7 @@ impl Kind {
             })),
             Shape::Line { normal: [1.0, _] } => Some(Self::Cylinder(Cylinder {
                 radius: piece.from[0],
-                ends: heights,
+                ends: [heights[0], heights[1].min(highest)],
             })),
             Shape::Arc { .. } => piece.ball().map(Self::Ball),
             Shape::Line { .. } => None,
@@ -97,10 +100,10 @@ impl Kind {
 }
 
 /// The envelope and the edges of a tool along a segment that turns. Marks what it settles as done; the rest of that is
-/// for charts.
+/// for charts. What is `highest` above the tip, or higher, is left out.
 pub(crate) fn envelope(
     outline: &Outline,
-    segment: &Segment,
+    (segment, highest): (&Segment, f64),
     searching: &mut Searching,
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
@@ -111,7 +114,10 @@ pub(crate) fn envelope(
     };
     let mut search = (searching, &mut leftovers);
     let piece = |(searching, leftovers): &mut (&mut Searching, &mut Vec<Leftover>), piece: &Piece| {
-        let kind = Kind::of(piece)?;
+        if piece.heights()[0] > highest {
+            return Some(());
+        }
+        let kind = Kind::of(piece, highest)?;
         let element = Element::Patches(piece.patches.clone());
         settle(motion, &element, leftovers, |span| match &kind {
             Kind::Ball(ball) => settle_shell(ball, (motion, span), searching, &source),
@@ -121,6 +127,9 @@ pub(crate) fn envelope(
         Some(())
     };
     let rim = |(searching, leftovers): &mut (&mut Searching, &mut Vec<Leftover>), rim: &Rim| {
+        if rim.height > highest {
+            return Some(());
+        }
         let element = Element::Edges(rim.edges.clone());
         let search = RimSearch::new(rim, motion, searching.accuracy, &source);
         settle(motion, &element, leftovers, |span| {
@@ -132,9 +141,10 @@ pub(crate) fn envelope(
     leftovers
 }
 
-/// The tool at rest at one end of a segment, of which at least one side turns. Marks what it settles as done.
+/// The tool at rest at one end of a segment, of which at least one side turns, but for what is `highest` above the tip,
+/// or higher. Marks what it settles as done.
 pub(crate) fn placement(
-    outline: &Outline,
+    (outline, highest): (&Outline, f64),
     [before, after]: [Option<&Segment>; 2],
     source: Source,
     searching: &mut Searching,
@@ -163,7 +173,8 @@ pub(crate) fn placement(
         source,
     };
     for piece in &outline.pieces {
-        let settled = match Kind::of(piece) {
+        let settled = match Kind::of(piece, highest) {
+            _ if piece.heights()[0] > highest => Some(()),
             Some(Kind::Ball(ball)) => resting.shell(&ball, searching),
             // No line meets the wall of an upright tool at rest.
             Some(Kind::Cylinder(_)) if resting.pose.lean() == 0.0 => Some(()),

@@ -13,14 +13,13 @@ use super::Accuracy;
 use super::axis_motion::{AxisMotion, Bounds, Moment};
 use super::disc::Placed;
 use super::spans::{Span, Verdict};
-use super::zero::{Known, Sample, Turn, start, zero};
+use super::zero::{Sample, Turn, zero};
 use crate::cutter::outline::{Rim, fan_normal};
 use crate::methods::harvest::{Collector, unit};
 use crate::methods::sheets::Undecided::{self, Close};
 use crate::methods::sheets::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
 use crate::methods::sheets::{around, distance, search_lines};
 use nalgebra::Vector3;
-use std::cell::Cell;
 use sweepsim_dexel::Source;
 
 /// A plane that is steeper than this is left to charts.
@@ -80,27 +79,71 @@ impl Facing {
     }
 }
 
+/// Whether the plane of a circle with this radius and height is never steep, and its `E` convex for all lines over the
+/// disc at any time of the span.
+pub(super) fn is_simple([radius, height]: [f64; 2], [from, to]: [&Moment; 2], bounds: &Bounds) -> bool {
+    if !(bounds.rise[0] >= STEEP || bounds.rise[1] <= -STEEP) {
+        return false;
+    }
+    let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+    let far = height.abs();
+    let bow = far * bounds.bend;
+    let [a, b] = [from, to].map(|m| (m.velocity + m.rate * height).xy().norm());
+    let slow = a.min(b) - 0.5 * bow * bounds.length;
+    let fast = bounds.speed + far * bounds.rate;
+    let reach = radius + fast * bounds.length;
+    // h = a_h/a_z
+    let lean = bounds.lean[1].abs().min(1.0) / least;
+    let tilt = bounds.rate * (1.0 + lean) / least;
+    let tilts = bounds.bend * (1.0 + lean) / least + 2.0 * bounds.rate * tilt / least;
+    let f = reach * lean;
+    let f_bend = bow * lean + 2.0 * fast * tilt + reach * tilts;
+    slow > 0.0 && slow * slow > 1.01 * (reach * bow + f * f_bend)
+}
+
+/// About where `E` is 0 between two times at which its signs differ: at the zero of the cubic that has its values and
+/// slopes there.
+fn start([from, to]: [Value; 2], inwards: f64) -> f64 {
+    let way = to.t - from.t;
+    let [a, b] = [2.0 * from.half * way, 2.0 * to.half * way];
+    let rise = to.square - from.square;
+    let third = a + b - 2.0 * rise;
+    let second = rise - a - third;
+    // Of the parabola with both values and the difference of the slopes.
+    let bend = 0.5 * (b - a);
+    let slope = rise - bend;
+    let root = (slope * slope - 4.0 * bend * from.square).sqrt();
+    let mut share = -2.0 * from.square / (slope - inwards * root);
+    for _ in 0..2 {
+        let value = from.square + share * (a + share * (second + share * third));
+        share -= value / (a + share * (2.0 * second + share * 3.0 * third));
+    }
+    from.t + way * share
+}
+
 /// A search of a rim along a motion.
 pub(super) struct RimSearch<'a, F> {
     rim: &'a Rim,
     motion: &'a AxisMotion,
     accuracy: Accuracy,
     source: F,
-    /// How fast velocities turn.
+    /// Bounds of the speed of points of the rim, of `|a′|`, and of how fast velocities turn.
+    speed: f64,
+    rate: f64,
     turning: f64,
-    /// Where lines last came into the circle, and where they went out of it.
-    last: [Cell<Option<Known>>; 2],
 }
 
 impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
     pub fn new(rim: &'a Rim, motion: &'a AxisMotion, accuracy: Accuracy, source: F) -> Self {
+        let bounds = motion.bounds([&motion.at(0.0), &motion.at(1.0)]);
         Self {
             rim,
             motion,
             accuracy,
             source,
-            turning: motion.bounds([&motion.at(0.0), &motion.at(1.0)]).turning(),
-            last: Default::default(),
+            speed: bounds.speed + (rim.height.abs() + rim.radius) * bounds.rate,
+            rate: bounds.rate,
+            turning: bounds.turning(),
         }
     }
 
@@ -146,32 +189,13 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
         Verdict::Settled(left)
     }
 
-    /// Whether the plane of the circle is never steep, and `E` convex.
     fn is_simple(&self, ends: [&Moment; 2], bounds: &Bounds) -> bool {
-        (bounds.rise[0] >= STEEP || bounds.rise[1] <= -STEEP) && self.is_convex(ends, bounds)
+        is_simple([self.rim.radius, self.rim.height], ends, bounds)
     }
 
     /// Of `E`.
     fn doubt(&self) -> f64 {
         16.0 * self.accuracy.slack * self.rim.radius / STEEP
-    }
-
-    /// Whether `E` is convex for all lines over the disc at any time of the span.
-    fn is_convex(&self, [from, to]: [&Moment; 2], bounds: &Bounds) -> bool {
-        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
-        let height = self.rim.height.abs();
-        let bow = height * bounds.bend;
-        let [a, b] = [from, to].map(|m| (m.velocity + m.rate * self.rim.height).xy().norm());
-        let slow = a.min(b) - 0.5 * bow * bounds.length;
-        let fast = bounds.speed + height * bounds.rate;
-        let reach = self.rim.radius + fast * bounds.length;
-        // h = a_h/a_z
-        let lean = bounds.lean[1].abs().min(1.0) / least;
-        let tilt = bounds.rate * (1.0 + lean) / least;
-        let tilts = bounds.bend * (1.0 + lean) / least + 2.0 * bounds.rate * tilt / least;
-        let f = reach * lean;
-        let f_bend = bow * lean + 2.0 * fast * tilt + reach * tilts;
-        slow > 0.0 && slow * slow > 1.01 * (reach * bow + f * f_bend)
     }
 
     #[inline]
@@ -240,17 +264,9 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
             slack,
             height_tolerance,
         } = self.accuracy;
-        let before = &self.last[usize::from(inwards < 0.0)];
-        let last = before.get();
         let bracket = ends.map(|end| end.t);
-        let first = match last.map(|last| last.over(line)) {
-            Some(t) if t > bracket[0] && t < bracket[1] => t,
-            _ => start(
-                bracket,
-                ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
-            ),
-        };
-        let (found, known) = zero(
+        let first = start(ends, inwards);
+        let found = zero(
             bracket,
             ([true; 2], first),
             |t| {
@@ -268,7 +284,7 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 let (placed, arm) = &sample.state;
                 let along = placed.along(arm);
                 let out = arm.dot(&placed.travel) / self.rim.radius;
-                let speed = placed.travel.norm() + self.rim.radius * placed.rate.norm();
+                let speed = self.speed;
                 // What a step of Newton's method leaves is of second order, and what the next derivative leaves of third.
                 let inverse = placed.axis.z.recip();
                 let fast = speed * inverse;
@@ -277,24 +293,17 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 if !(turned < 0.125) {
                     return None;
                 }
-                let error =
-                    16.0 * (slack / STEEP + step.abs() * speed) * (placed.rate.norm() + speed / self.rim.radius)
-                        + 16.0 * f64::EPSILON * speed;
+                let error = 16.0 * (slack / STEEP + step.abs() * speed) * (self.rate + speed / self.rim.radius)
+                    + 16.0 * f64::EPSILON * speed;
                 let [[n, m], [p, q]] = self.rim.normals;
                 let faces = [n * out + m * along, p * out + q * along];
                 // NaN is not certain.
                 if !(faces[0].abs() > error && faces[1].abs() > error) {
                     return None;
                 }
-                let tilt = arm.z * inverse;
-                let gradient = [
-                    2.0 * inwards * (arm.x - tilt * placed.axis.x),
-                    2.0 * inwards * (arm.y - tilt * placed.axis.y),
-                ];
-                let known = |t: f64| Known::new(line, t, (gradient, sample.slope), last.as_ref());
                 let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
                 if alike {
-                    return Some((None, known(t)));
+                    return Some(None);
                 }
                 let rest = turned * turned * (sample.rise.abs() + fast.abs()) * step.abs();
                 if !(turned <= TURNED && 2.0 * rest <= height_tolerance) {
@@ -328,10 +337,9 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                     height: placed.centre.z + arm.z + step * (sample.rise + 0.5 * lift * step),
                     normal,
                 };
-                Some((Some((turn, jump)), known(t)))
+                Some(Some((turn, jump)))
             },
         )?;
-        before.set(Some(known));
         if let Some((Turn { t, height, normal }, jump)) = found {
             collector.crossing(number, height, jump, unit(normal), (self.source)(t));
         }

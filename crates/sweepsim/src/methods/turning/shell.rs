@@ -109,6 +109,11 @@ pub(super) trait Shell {
     /// The signs of `g` on both sheets over a block of lines, at all times between two.
     fn signs(&self, limits: &Self::Limits, poses: [&Self::Posed; 2], block: [Range; 2], length: f64) -> [Sign; 2];
 
+    /// Whether a sheet is certain to be beyond the ends of the piece between two times: worth asking of every line.
+    fn is_beyond(&self, _: &Self::Limits, _ends: [(&Self::Posed, &Meeting); 2], _sheet: usize) -> bool {
+        false
+    }
+
     /// Whether the sign of `g` may be that of a rounding error.
     fn doubtful(&self, limits: &Self::Limits, meeting: &Meeting, sheet: usize) -> bool;
 

@@ -18,6 +18,12 @@ pub struct HeightMap {
 
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
+/// The smallest range that holds both.
+fn hull(a: [f64; 2], b: &[f64; 2]) -> [f64; 2] {
+    let (low, high) = (b[0] < a[0], b[1] > a[1]);
+    [if low { b[0] } else { a[0] }, if high { b[1] } else { a[1] }]
+}
+
 /// A box in the frame of a grid: its lowest and highest coordinate in each direction.
 pub(crate) type Box3 = [[f64; 2]; 3];
 
@@ -51,15 +57,13 @@ impl HeightMap {
             blocks: vec![EMPTY; cells[0].div_ceil(BLOCK) * cells[1].div_ceil(BLOCK)],
             top: f64::NEG_INFINITY,
         };
-        for i in 0..cells[0] {
-            for j in 0..cells[1] {
-                let [lower, upper] = map.lines[i * cells[1] + j];
-                let at = map.block(i, j);
-                let block = &mut map.blocks[at];
-                *block = [block[0].min(lower), block[1].max(upper)];
-                map.top = map.top.max(upper);
+        for (i, column) in map.lines.chunks_exact(cells[1]).enumerate() {
+            let blocks = map.blocks.chunks_exact_mut(cells[1].div_ceil(BLOCK)).nth(i / BLOCK);
+            for (block, lines) in blocks.into_iter().flatten().zip(column.chunks(BLOCK)) {
+                *block = lines.iter().fold(*block, hull);
             }
         }
+        map.top = map.blocks.iter().fold(EMPTY, hull)[1];
         map
     }
 
@@ -87,7 +91,7 @@ impl HeightMap {
                 for i in bi * BLOCK..((bi + 1) * BLOCK).min(self.cells[0]) {
                     for j in bj * BLOCK..((bj + 1) * BLOCK).min(self.cells[1]) {
                         let [lower, upper] = self.lines[i * self.cells[1] + j];
-                        all = [all[0].min(lower), all[1].max(upper)];
+                        all = hull(all, &[lower, upper]);
                     }
                 }
                 let at = self.block(bi * BLOCK, bj * BLOCK);

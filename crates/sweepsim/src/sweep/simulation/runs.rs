@@ -4,7 +4,8 @@
 
 use super::heights::{Box3, HeightMap, window};
 use crate::methods::lattice::LineMask;
-use crate::methods::translation::{Ceiling, GAP, stands};
+use crate::methods::search::Ceiling;
+use crate::methods::translation::{GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
 use crate::time::joined::push_joined;

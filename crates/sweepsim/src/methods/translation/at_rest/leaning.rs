@@ -44,7 +44,7 @@ pub(crate) fn leaning(
     outline: &Outline,
     (turn, tip, slack): (&Matrix3<f64>, [f64; 3], f64),
     sides: [Neighbour; 2],
-    lines: &mut Collector,
+    (lines, highest): (&mut Collector, f64),
     source: Source,
     done: &mut [bool],
 ) {
@@ -74,7 +74,7 @@ pub(crate) fn leaning(
         source,
     };
     for piece in &outline.pieces {
-        if leaning.piece(piece).is_some() {
+        if piece.heights()[0] > highest || leaning.piece(piece).is_some() {
             done[piece.patches.clone()].fill(true);
         }
     }

@@ -1,7 +1,6 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
-use super::super::Ceiling;
 use super::super::curves::stands;
 use super::ball_sign_changes::Lune;
 use super::radial::{Hypot, Radial, Stretch, StretchPoint};
@@ -49,13 +48,12 @@ pub(crate) fn placements(
     outline: &Outline,
     (tip, slack): ([f64; 3], f64),
     sides: [Neighbour; 2],
-    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
+    (lines, highest): (&mut Collector, f64),
     source: Source,
     done: &mut [bool],
 ) {
-    let spacing = lines.lines.spacing();
     let mut placed = Placed {
-        highest: ceiling.map_or(f64::INFINITY, |ceiling| ceiling.above(tip[2], spacing)),
+        highest,
         tip,
         slack,
         sides,

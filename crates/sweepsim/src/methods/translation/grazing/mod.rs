@@ -13,7 +13,6 @@ mod span;
 mod tree;
 mod walk;
 
-use super::Ceiling;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::methods::harvest::Collector;
@@ -59,7 +58,8 @@ pub(crate) struct Patches<'a> {
 pub(crate) struct Grazed<'a, 'b> {
     pub segment: &'a Segment,
     pub collector: &'a mut Collector<'b>,
-    pub ceiling: Option<&'a Ceiling>,
+    /// What is this high above the tip is above the ceiling at all times.
+    pub highest: f64,
     /// The rounding error of coordinates.
     pub system_rounding: f64,
     /// Heights this close are the same.
@@ -146,14 +146,11 @@ impl Grazed<'_, '_> {
         source: &impl Fn(f64) -> Source,
         targets: &mut Vec<Target>,
     ) -> bool {
-        let lowest = motion.from.min(motion.from + motion.rise);
-        let spacing = self.collector.lines.spacing();
-        let ceiling = self.ceiling.map(|ceiling| ceiling.above(lowest, spacing));
         let mut walk = Walk {
             element,
             cells,
             motion,
-            highest: ceiling.unwrap_or(f64::INFINITY),
+            highest: self.highest,
             monitor: self.monitor,
             looks: 0,
             own_looks: 0,

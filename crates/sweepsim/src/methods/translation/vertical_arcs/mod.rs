@@ -24,7 +24,6 @@ mod roots;
 mod section;
 mod walls;
 
-use super::Ceiling;
 use super::arc_place::ArcPlace;
 use super::quarter::{Quarter, STEEPEST};
 use super::rows::Floor;
@@ -49,7 +48,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 pub(crate) fn sweep_vertical_arc(
     outline: &Outline,
     (arc, segment, slack, height_tolerance): (&VerticalArc, &Segment, f64, f64),
-    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
+    (lines, highest): (&mut Collector, f64),
     source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
@@ -80,9 +79,7 @@ pub(crate) fn sweep_vertical_arc(
             let [x, y, z] = segment.velocity(end)[1];
             if arc.level { ux * x + uy * y } else { z }
         }),
-        highest: ceiling.map_or(f64::INFINITY, |ceiling| {
-            ceiling.above(arc.heights()[0], lines.lines.spacing())
-        }),
+        highest,
         lines,
         source,
     };

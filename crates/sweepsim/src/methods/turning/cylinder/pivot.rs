@@ -1,7 +1,10 @@
 //! Where a cylinder may move so little across its axis that its `G` rises.
 
-use super::Cylinder;
+use super::{Cylinder, CylinderLimits};
+use crate::methods::sheets::intervals::{Sign, add, between, hull, mul, scaled, square, sub, wider};
 use crate::methods::turning::axis_motion::{Bounds, Moment};
+use crate::methods::turning::lean::Lean;
+use crate::methods::turning::shell::{Falls, Meeting};
 
 impl Cylinder {
     /// Heights at which `G` may rise. With `S` as above and `c = ⟨b′, a × a′⟩/|a′|`,
@@ -72,5 +75,44 @@ impl Cylinder {
         // Where `|ahead + ζ |a′|| ≤ reach`.
         let heights = [least, rate].map(|rate| [(-ahead[1] - reach) / rate, (-ahead[0] + reach) / rate]);
         Some([heights[0][0].min(heights[1][0]), heights[0][1].max(heights[1][1])])
+    }
+
+    /// Whether `G` falls where it may rise at heights in a zone.
+    pub(super) fn falls_near(
+        &self,
+        zone: [f64; 2],
+        limits: &CylinderLimits,
+        [(from, a), (to, b)]: [(&Lean, &Meeting); 2],
+        length: f64,
+        sheet: usize,
+    ) -> Falls {
+        let sag = 0.125 * limits.bow * length * length;
+        let place = |k: usize| wider(hull(a.place[k], b.place[k]), sag);
+        let Some([alpha, delta, zeta]) = self.ranges(limits, [place(0), place(1)], sheet) else {
+            return Falls::Beyond;
+        };
+        if zeta[1] < zone[0] || zeta[0] > zone[1] {
+            return Falls::Always;
+        }
+        let poses = [from, to];
+        let (g, across) = Self::rates(limits, poses, length, [alpha, delta, zeta]);
+        if Sign::of(g, limits.doubt / self.radius) != Sign::Unknown {
+            return Falls::Always;
+        }
+        let rate = |k: usize| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length);
+        let tau = between(poses[0].travel[2], poses[1].travel[2], limits.travel * length);
+        let around = sub(mul(alpha, across[1]), mul(delta, across[0]));
+        let x = add(mul(alpha, rate(0)), mul(delta, rate(1)));
+        let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
+        let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
+        let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
+        // NaN is unknown.
+        if slope[1] < 0.0 {
+            Falls::Always
+        } else if slope[0] > 0.0 {
+            Falls::Never
+        } else {
+            Falls::Unknown
+        }
     }
 }

@@ -33,7 +33,13 @@ fn found(
         segment: 0,
         t: t as f32,
     };
-    let left = envelope(outline, segment, &mut searching, source, [&mut done.0, &mut done.1]);
+    let left = envelope(
+        outline,
+        (segment, f64::INFINITY),
+        &mut searching,
+        source,
+        [&mut done.0, &mut done.1],
+    );
     let mut without: Vec<u32> = harvest.open.iter().map(|(line, _)| *line).collect();
     without.extend(left.iter().flat_map(|left| left.lines.iter().copied()));
     harvest

@@ -105,6 +105,11 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
                     meeting: shell.meet(posed, at),
                 };
                 let ends = [&view(span.from.t, &a), &view(span.to.t, &b)];
+                let met = ends.map(|end| (end.at, &end.meeting));
+                let sheets = [0, 1].map(|sheet| sheets[sheet] && !shell.is_beyond(limits, met, sheet));
+                if sheets == [false; 2] {
+                    return Ok(());
+                }
                 if self.stays(ends, sheets) {
                     visited += 1;
                     return Ok(());
