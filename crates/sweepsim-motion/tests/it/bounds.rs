@@ -8,7 +8,7 @@ fn radius(solid: &[[f64; 2]], height: f64) -> Option<f64> {
     let at = |pair: &[[f64; 2]]| {
         let ([a, low], [b, high]) = (pair[0], pair[1]);
         let part = (height - low) / (high - low);
-        (high > low && (0.0..=1.0).contains(&part)).then(|| a + (b - a) * part)
+        (high > low && (0.0..=1.0).contains(&part)).then_some(a + (b - a) * part)
     };
     solid.windows(2).filter_map(at).reduce(f64::max)
 }

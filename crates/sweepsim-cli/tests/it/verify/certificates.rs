@@ -160,3 +160,29 @@ fn nothing_to_certify_is_said() {
         "{words}"
     );
 }
+
+/// A tool of one free-form patch, and a blank that is a mesh: proven all the same, and its depths accepted.
+#[test]
+#[ignore = "takes a minute"]
+fn the_hand_railing_is_proven() {
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures");
+    let job = fixtures.join("jobs/railing-eased.ron");
+    let folder = Workdir::new("");
+    let arguments = [
+        "verify",
+        job.to_str().expect("a path"),
+        "--only",
+        "certificate,report",
+        "--out",
+        "out",
+    ];
+    let said = folder.good(&arguments);
+    assert!(said.contains("PASS, proven everywhere: gouges and excess"), "{said}");
+    let (code, said) = check(&folder, "out/certificate.json");
+    // A checker knows no stock between triangles.
+    assert!(
+        code != Some(0) && said.contains("proven: no cutter goes deeper into the target than 0.050000 mm"),
+        "{said}"
+    );
+    assert!(!said.contains("not proven: no cutter"), "{said}");
+}
