@@ -109,10 +109,10 @@ fn extend(surface: &Surface, sides: &mut [Side]) {
     };
     let parts = || (0..STEPS).map(|k| 0.5_f64.powi(k));
     if let Some(end) = { parts().map(|part| low + (bottom - low) * part) }.find(|end| is_free([*end, low], sides)) {
-        sides[0] = Side::above(end);
+        sides[0] = Side::above(end + surface.rounding);
     }
     if let Some(end) = { parts().map(|part| high + (top - high) * part) }.find(|end| is_free([high, *end], sides)) {
-        sides[last] = Side::below(end);
+        sides[last] = Side::below(end - surface.rounding);
     }
 }
 
