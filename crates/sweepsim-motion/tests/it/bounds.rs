@@ -144,6 +144,21 @@ fn tools_of_revolution_are_close_between_both() {
     }
 }
 
+/// Between the tip on the axis and a rim below it, there is no tool.
+#[test]
+fn nothing_is_within_a_hollow() {
+    let tool = hollow();
+    for own in [
+        &tool,
+        &Tool::from_patches(tool.patches().to_vec(), 1e-9).expect("the same tool"),
+    ] {
+        assert!(bounded(own) > 1000);
+        let Bounds { hulls, cores, .. } = own.bounds();
+        assert_eq!(widest(cores, -0.2), 0.0);
+        assert!(widest(hulls, -0.2) > 2.0 && widest(cores, 0.2) > 2.0);
+    }
+}
+
 #[test]
 fn prisms_are_between_cylinders() {
     let cross = [[0, 0], [-1, 0], [0, -1], [-1, -1], [1, 0]];

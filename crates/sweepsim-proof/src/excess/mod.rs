@@ -12,6 +12,7 @@
 mod bounding;
 mod found;
 mod known;
+mod mesh;
 mod order;
 mod patch;
 mod record;

@@ -42,9 +42,10 @@ pub struct Left {
 
 /// As many distances are tried.
 const ROUNDS: usize = 16;
-/// As much of all patches is left to be looked at when it is asked whether the limit is kept; or half of what parts are
-/// worth.
+/// At least this part of all patches, and so many for each part of the surface, are left to be looked at when it is
+/// asked whether the limit is kept.
 const RESERVE: usize = 4;
+const RESERVE_OF_A_PART: usize = 2;
 /// What is far from the target need not be known better than this part of it.
 const SHARE: f64 = 1.0 / 64.0;
 /// However many parts there are, so many patches may be looked at for each of them.
@@ -225,7 +226,7 @@ impl Scene<'_> {
         let mut distance = limits.width;
         // Whether the limit is kept comes before how far below it the bound is.
         let budget = limits.pairs.max(PATCHES_OF_A_PART * self.patches.len());
-        let reserve = (budget / RESERVE).max(PATCHES_OF_A_PART / 2 * self.patches.len());
+        let reserve = (budget / RESERVE).max(RESERVE_OF_A_PART * self.patches.len());
         for _ in 0..ROUNDS {
             let most = budget.saturating_sub(left.patches);
             let known = left.highest.map_or(0.0, |(_, height)| height);

@@ -1,6 +1,7 @@
 //! What there was before the first cut.
 
 use super::bounding::{Bound, Weights, bounding};
+use super::mesh;
 use super::patch::Points;
 use nalgebra::Vector3;
 use smallvec::SmallVec;
@@ -96,40 +97,6 @@ fn outer(stock: &Stock, skin: f64) -> Result<Vec<Outer>, MeshError> {
     })
 }
 
-/// Whether the hull of some points is outside of a mesh, or no deeper in it than its skin; if that is negative, so far
-/// away.
-///
-/// It is in a ball around its middle. If that has no surface, or each triangle there is below a plane that has the hull
-/// above it, the hull is outside as its middle is: the plane is across the way to the surface, or that of the triangle.
-fn misses_mesh(mesh: &DistanceTo, points: &[Vector3<f64>], middle: &Vector3<f64>, skin: f64) -> bool {
-    let size = points.iter().map(|point| (point - middle).norm()).fold(0.0, f64::max);
-    let size = size * (1.0 + 1e-9) + 1e-12;
-    let Some(nearest) = mesh.nearest((*middle).into()) else {
-        return true;
-    };
-    if nearest.distance + skin > size {
-        return true;
-    }
-    let away = (-skin).max(0.0);
-    let least = |normal: &Vector3<f64>| {
-        points
-            .iter()
-            .map(|point| point.dot(normal))
-            .fold(f64::INFINITY, f64::min)
-    };
-    let normal = (middle - Vector3::from(nearest.place)).normalize();
-    let own = least(&normal);
-    let is_below = |corners: &[[f64; 3]; 3], face: [f64; 3]| {
-        let below = |normal: &Vector3<f64>, least: f64| {
-            let mut corners = corners.iter();
-            corners.all(|corner| Vector3::from(*corner).dot(normal) + away <= least - 1e-12)
-        };
-        let face = Vector3::from(face);
-        below(&normal, own) || below(&face, least(&face))
-    };
-    nearest.distance > 1e-12 && mesh.all_within((*middle).into(), size + away, is_below)
-}
-
 enum Shape {
     Block([Vector3<f64>; 2]),
     Cylinder {
@@ -176,7 +143,7 @@ impl Before {
                     all.extend(planes.iter().take(CUT).fold(points.iter().copied().collect(), cut));
                 }
                 Outer::Mesh(distance) => {
-                    if !misses_mesh(distance, points, middle, self.margin) {
+                    if !mesh::misses(distance, points, middle, self.margin) {
                         all.extend(points.iter().copied());
                     }
                 }
@@ -352,7 +319,7 @@ impl Shape {
                 let away = (middle - centre).try_normalize(1e-12);
                 away.is_some_and(|away| least(&away) > centre.dot(&away) + radius)
             }
-            Self::Mesh(distance) => misses_mesh(distance, points, middle, skin),
+            Self::Mesh(distance) => mesh::misses(distance, points, middle, skin),
             Self::Union(parts) => parts.iter().all(|part| part.misses(points, (middle, normal), skin)),
             Self::Intersection(parts) => {
                 parts.is_empty() || parts.iter().any(|part| part.misses(points, (middle, normal), skin))

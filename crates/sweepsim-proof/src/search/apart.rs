@@ -33,7 +33,7 @@ impl Apart<'_> {
     /// A bound of the distance between both, and the direction in which it was found; the search ends at `enough`.
     pub fn distance(&self, enough: f64) -> Option<(f64, Normal)> {
         let apart = |normal: &Normal| -(self.top(&normal.vector).0 + self.during.reach(&-normal.vector));
-        let away = self.during.core(&self.cell.centre) - self.cell.centre;
+        let away = self.during.on_axis(&self.cell.centre) - self.cell.centre;
         let axis = self.during.ends[0].axis;
         let starts = [away, axis, -axis].into_iter().filter_map(|start| Normal::near(&start));
         let best = starts.map(|normal| (apart(&normal), normal));

@@ -242,7 +242,7 @@ impl Above<'_> {
     pub fn separating(&self, gap_needed: f64) -> Option<Written> {
         let gap = |normal: &Vector3<f64>| -(self.cell.support(normal) + self.during.reach(&-normal));
         // Away from the axis, or beyond one of its ends.
-        let away = self.during.core(&self.cell.centre) - self.cell.centre;
+        let away = self.during.on_axis(&self.cell.centre) - self.cell.centre;
         let axis = self.during.ends[0].axis;
         let measured = |start: Vector3<f64>| Normal::near(&start).map(|normal| (gap(&normal.vector), normal));
         let starts = [away, axis, -axis].into_iter().filter_map(measured);

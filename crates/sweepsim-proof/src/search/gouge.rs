@@ -84,6 +84,8 @@ pub struct Enclosed {
 /// At first, about so many parts of the work, here and there, look at so many pairs.
 const SAMPLED: usize = 64;
 const FIRST_LOOK: usize = 512;
+/// What may be much larger than the tool has this part of the pairs.
+const LOOSE: usize = 8;
 /// Where there is room up to the limit, the enclosure need not be narrower than this part of it.
 const ROOM: f64 = 0.25;
 /// How deep cutters go that go too deep need not be known better than this, in parts of it.
@@ -275,7 +277,7 @@ fn look(
         // What is much larger than the tool may never come to an end.
         let mut wanted = wanted;
         if solid.is_loose() {
-            wanted.pairs = wanted.pairs.min(FIRST_LOOK);
+            wanted.pairs = wanted.pairs.min(FIRST_LOOK.max(wanted.pairs / LOOSE));
         }
         let run = Run::new(solid, &stretches, wanted.slack);
         let look = |wanted| Search::new((target, root), &run, wanted).run();

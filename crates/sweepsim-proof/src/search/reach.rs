@@ -29,16 +29,16 @@ impl During<'_> {
     /// A point on the axis of the solid that is about as near to another point as one is; and the solid's tip there.
     fn nearest(&self, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         let [low, high] = self.run.solid.heights();
-        let on_axis = |end: &Placement| end.tip + end.axis * (point - end.tip).dot(&end.axis).clamp(low, high);
+        let place = |end: &Placement| end.tip + end.axis * (point - end.tip).dot(&end.axis).clamp(low, high);
         let (first, last) = (&self.ends[0], &self.ends[self.ends.len() - 1]);
-        let [a, b] = [on_axis(first), on_axis(last)];
+        let [a, b] = [place(first), place(last)];
         let way = b - a;
         let part = ((point - a).dot(&way) / way.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         (a + way * part, first.tip + (last.tip - first.tip) * part)
     }
 
     /// That point of the axis.
-    pub fn core(&self, point: &Vector3<f64>) -> Vector3<f64> {
+    pub fn on_axis(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.nearest(point).0
     }
 

@@ -243,7 +243,7 @@ impl Convex {
 
 #[cfg(test)]
 mod tests {
-    use crate::tool::cover;
+    use crate::tool::{Level, cover, cover_and_cores};
     use sweepsim_motion::Tool;
 
     #[test]
@@ -265,5 +265,59 @@ mod tests {
             }
         }
         assert!((5000..6500).contains(&inside), "{inside}");
+    }
+
+    /// Solids of many corners, of few, and with arcs.
+    fn solids() -> Vec<super::Convex> {
+        let tools = [Tool::ball(3.0, 10.0), Tool::flat(3.0, 10.0), Tool::bull(3.0, 1.0, 10.0)];
+        let all = tools.map(|tool| {
+            let tool = tool.expect("a tool");
+            let free = Tool::from_patches(tool.patches().to_vec(), 1e-9).expect("the same tool");
+            [cover(&tool, 1e-3), cover_and_cores(&free, 1e-3)].concat()
+        });
+        let all = all.concat();
+        assert!(all.iter().filter(|solid| solid.corners.len() > 2 * super::FEW).count() >= 4);
+        all
+    }
+
+    #[test]
+    fn no_corner_reaches_farther_than_those_that_are_found() {
+        for solid in solids() {
+            for k in 0..=720 {
+                let (sine, cosine) = (std::f64::consts::PI * (f64::from(k) / 720.0 - 0.5)).sin_cos();
+                let direction = [cosine.max(0.0), sine];
+                let farthest = |corners: &[[f64; 2]]| {
+                    corners
+                        .iter()
+                        .map(|corner| super::dot(direction, *corner))
+                        .fold(f64::NEG_INFINITY, f64::max)
+                };
+                let found = farthest(solid.corners_towards(direction));
+                assert!(farthest(&solid.corners) - found < 1e-12, "{direction:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn away_is_where_the_distance_grows() {
+        let mut outside = 0;
+        for solid in solids() {
+            let level = Level::new(&solid);
+            for (i, j) in (0..30).flat_map(|i| (0..60).map(move |j| (i, j))) {
+                let point = [f64::from(i) * 0.2017, f64::from(j) * 0.3011 - 4.0];
+                let distance = level.distance(point);
+                let away = solid.away(point);
+                assert!(away.is_some() || distance < 1e-9, "{point:?}");
+                if let Some([out, up]) = away.filter(|_| distance > 1e-6) {
+                    let farther = level.distance([point[0] + out, point[1] + up]);
+                    assert!(
+                        (farther - distance - 1.0).abs() < 1e-9,
+                        "{point:?}: {distance} {farther}"
+                    );
+                    outside += 1;
+                }
+            }
+        }
+        assert!(outside > 5000, "{outside}");
     }
 }

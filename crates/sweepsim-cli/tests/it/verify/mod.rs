@@ -5,6 +5,7 @@ mod certificates;
 mod directions;
 mod nearness;
 mod planted;
+mod shapes;
 
 use crate::support::{Workdir, text};
 use std::fs;

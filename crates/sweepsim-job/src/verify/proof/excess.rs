@@ -1,10 +1,11 @@
 //! What is proven of what is left standing.
 
+use super::process::loose;
 use super::{Known, LISTED, Proof, Proven};
 use crate::base::JobError;
 use crate::verify::asked::{Asked, limits};
 use sweepsim_formats::{Measure, OpenPlace, ReportedFinding, Statement, StatementState, StatementWitness};
-use sweepsim_proof::{Convex, Cutter, Target, height_claim, highest_from};
+use sweepsim_proof::{Cutter, Target, height_claim, highest_from};
 
 /// If the lines have seen material that is left, how much is left has so many patches to be known better.
 const PATCHES: usize = 200_000;
@@ -75,17 +76,11 @@ pub(super) fn excess(
             findings.push(finding);
         }
         StatementState::Open => {
-            let loose = cutters.iter().filter(|(_, solids)| solids.iter().any(Convex::is_loose));
-            let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
-            if known > least {
-                statement.reason = Some(super::between_limits([least, most], known, "high"));
-            } else if !loose.is_empty() {
-                let tools = loose.join(", ");
-                let text = format!(
-                    "what tools have removed is known of solids of revolution in them only, and these are not round: {tools}"
-                );
-                statement.reason = Some(text);
-            }
+            statement.reason = if known > least {
+                Some(super::between_limits([least, most], known, "high"))
+            } else {
+                loose(&cutters)
+            };
             statement.open_count = left.open_count;
             let place = |[low, high]: &[[f64; 3]; 2]| {
                 let mut place = OpenPlace::default();

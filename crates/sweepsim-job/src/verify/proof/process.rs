@@ -124,7 +124,7 @@ fn said(proof: &Proof, texts: &mut ProgramTexts, movers: Movers, found: &Touched
         statement.open_count = found.open_count;
         let open = found.open.iter().take(LISTED);
         statement.open = open.map(|(path, open)| place(job, texts, *path, open)).collect();
-        statement.reason = loose(solids);
+        statement.reason = loose(&solids.cutters);
     }
     let mut findings = Vec::new();
     for (path, witness) in &found.moves {
@@ -139,17 +139,14 @@ fn said(proof: &Proof, texts: &mut ProgramTexts, movers: Movers, found: &Touched
     Proven::of(statement, findings, claims(proof, solids, movers, found))
 }
 
-/// Tools of which it is not known what they remove.
-fn loose(solids: &Solids) -> Option<String> {
-    let loose = solids
-        .cutters
-        .iter()
-        .filter(|(_, solids)| solids.iter().any(Convex::is_loose));
+/// Why it may not be known what tools have removed.
+pub(super) fn loose(cutters: &BTreeMap<u32, Vec<Convex>>) -> Option<String> {
+    let loose = cutters.iter().filter(|(_, solids)| solids.iter().any(Convex::is_loose));
     let loose: Vec<String> = loose.map(|(number, _)| number.to_string()).collect();
     let tools = loose.join(", ");
     let text = || {
         format!(
-            "what tools have removed is known of solids of revolution in them only, and these are not round: {tools}"
+            "of tools that are not round, only what a round tool within them removes is known to be removed: {tools}"
         )
     };
     (!loose.is_empty()).then(text)

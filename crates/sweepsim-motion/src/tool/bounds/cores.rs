@@ -45,14 +45,10 @@ fn divide(surface: &Surface, heights: [f64; 2], into: &mut Vec<Convex>) {
         surface.tolerance,
     );
     let deepest = retreat(&mut sides, &own);
-    if let Some((_, at)) = deepest.filter(|(depth, _)| *depth > 2.0 * surface.tolerance) {
-        let is_inner = at - low > surface.flat && high - at > surface.flat;
-        let at = if is_inner { at } else { 0.5 * (low + high) };
-        if high - low > 2.0 * surface.flat {
-            divide(surface, [low, at], into);
-            divide(surface, [at, high], into);
-            return;
-        }
+    if let Some(at) = surface.division(heights, deepest) {
+        divide(surface, [low, at], into);
+        divide(surface, [at, high], into);
+        return;
     }
     if sides.len() < 3 {
         return;

@@ -31,14 +31,10 @@ fn divide(surface: &Surface, heights: [f64; 2], into: &mut Vec<Convex>) {
         .samples(heights)
         .map(|sample| (depth(sample.far, sample.height), sample.height));
     let deepest = own.max_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((_, at)) = deepest.filter(|(depth, _)| *depth > 2.0 * surface.tolerance) {
-        let is_inner = at - low > surface.flat && high - at > surface.flat;
-        let at = if is_inner { at } else { 0.5 * (low + high) };
-        if high - low > 2.0 * surface.flat {
-            divide(surface, [low, at], into);
-            divide(surface, [at, high], into);
-            return;
-        }
+    if let Some(at) = surface.division(heights, deepest) {
+        divide(surface, [low, at], into);
+        divide(surface, [at, high], into);
+        return;
     }
     for side in &mut sides {
         side.reach += surface.rounding;

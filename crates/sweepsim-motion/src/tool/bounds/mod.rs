@@ -9,7 +9,7 @@ mod slivers;
 use super::Tool;
 use crate::profile::Profile;
 use silhouette::{Sample, silhouette};
-use slivers::{Corners, Net, Shape, Sliver, slivers};
+use slivers::{Controls, Corners, Net, Sliver, slivers};
 
 type Convex = Vec<[f64; 2]>;
 
@@ -53,9 +53,9 @@ impl Surface {
         let radius = tool.cylinder.radius;
         let tolerance = TOLERANCE * radius;
         let pieces = tool.profile().map_or_else(Vec::new, Profile::pieces);
-        let curves = pieces.iter().flat_map(|piece| piece.curves()).map(Shape::Meridian);
+        let curves = pieces.iter().flat_map(|piece| piece.curves()).map(Controls::Meridian);
         let nets = tool.patches().iter().filter(|_| pieces.is_empty());
-        let nets = nets.map(|patch| Shape::Net(Net::new(patch.position(), patch.weight())));
+        let nets = nets.map(|patch| Controls::Net(Net::new(patch.position(), patch.weight())));
         let rounding = ROUNDING * tool.reach;
         let (parts, corners) = slivers(curves.chain(nets), (tolerance, rounding, MOST));
         Self {
@@ -83,6 +83,14 @@ impl Surface {
     fn meeting(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = &Sliver> {
         let meets = move |own: &&Sliver| own.heights()[0] <= high && own.heights()[1] >= low;
         self.parts.iter().filter(meets)
+    }
+
+    /// Where something between two heights is divided that is off by so much, at most, at a height.
+    fn division(&self, [low, high]: [f64; 2], most: Option<(f64, f64)>) -> Option<f64> {
+        let (off, at) = most?;
+        let is_inner = at - low > self.flat && high - at > self.flat;
+        let at = if is_inner { at } else { 0.5 * (low + high) };
+        (off > 2.0 * self.tolerance && high - low > 2.0 * self.flat).then_some(at)
     }
 
     fn samples(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = &Sample> {

@@ -22,10 +22,11 @@ pub(super) struct Sliver {
     /// The corners of a part of a patch: `(u, v)` = 00, 10, 11, 01.
     corners: Option<Corners>,
     thickness: f64,
-    shape: Shape,
+    controls: Controls,
 }
 
-pub(super) enum Shape {
+/// The control points that a part is a mean of.
+pub(super) enum Controls {
     Meridian(Bezier),
     Net(Net),
 }
@@ -67,14 +68,14 @@ impl Net {
 
 impl Sliver {
     /// All is rounded to multiples of `unit`: then what is level is so, and what is turned about the axis is the same.
-    fn new(shape: Shape, unit: f64) -> Self {
+    fn new(controls: Controls, unit: f64) -> Self {
         let rounded = |p: [f64; 2]| p.map(|c| (c / unit).round() * unit);
-        let (near, far, corners) = match &shape {
-            Shape::Meridian(curve) => {
+        let (near, far, corners) = match &controls {
+            Controls::Meridian(curve) => {
                 let points: Vec<[f64; 2]> = curve.points.iter().map(|p| rounded([p.x, p.y])).collect();
                 (points.clone(), points, None)
             }
-            Shape::Net(net) => {
+            Controls::Net(net) => {
                 let points: Vec<Vector3<f64>> = net.points.iter().map(|p| p.xyz() / p.w).collect();
                 let mean: Vector3<f64> = points.iter().sum();
                 let u = Vector3::new(mean.x, mean.y, 0.0).try_normalize(0.0);
@@ -90,18 +91,18 @@ impl Sliver {
             near: chain(near, -1.0),
             far: chain(far, 1.0),
             corners,
-            shape,
+            controls,
         }
     }
 
     /// Both halves, cut so that they are thinner.
     fn halves(&self, unit: f64) -> [Self; 2] {
-        match &self.shape {
-            Shape::Meridian(curve) => {
-                <[Bezier; 2]>::from(curve.halves()).map(|half| Self::new(Shape::Meridian(half), unit))
+        match &self.controls {
+            Controls::Meridian(curve) => {
+                <[Bezier; 2]>::from(curve.halves()).map(|half| Self::new(Controls::Meridian(half), unit))
             }
-            Shape::Net(net) => {
-                let [u, v] = [0, 1].map(|axis| net.halves(axis).map(|half| Self::new(Shape::Net(half), unit)));
+            Controls::Net(net) => {
+                let [u, v] = [0, 1].map(|axis| net.halves(axis).map(|half| Self::new(Controls::Net(half), unit)));
                 let thickest = |halves: &[Self; 2]| halves[0].thickness.max(halves[1].thickness);
                 if thickest(&u) <= thickest(&v) { u } else { v }
             }
@@ -201,10 +202,10 @@ impl Eq for ByThickness {}
 /// A surface in parts no thicker than the tolerance, as far as so many do, each kind once; and the corners of all. What
 /// is seen of them is rounded to multiples of a unit.
 pub(super) fn slivers(
-    shapes: impl Iterator<Item = Shape>,
+    surface: impl Iterator<Item = Controls>,
     (tolerance, unit, most): (f64, f64, usize),
 ) -> (Vec<Sliver>, Vec<Corners>) {
-    let mut all: BinaryHeap<ByThickness> = shapes.map(|shape| ByThickness(Sliver::new(shape, unit))).collect();
+    let mut all: BinaryHeap<ByThickness> = surface.map(|part| ByThickness(Sliver::new(part, unit))).collect();
     while all.len() < most && all.peek().is_some_and(|thickest| thickest.0.thickness > tolerance) {
         if let Some(ByThickness(thickest)) = all.pop() {
             all.extend(thickest.halves(unit).map(ByThickness));

@@ -1,17 +1,19 @@
 //! The ceiling of a tool that leans or turns.
 //!
-//! The level plane at the ceiling meets the tool only on a cylinder about its axis, or on the ball that it ends in, at all times. With `w` from the tip to
-//! a line's point in that plane and `e` from the nearest point of the axis at or above the centre of the ball, at the height `ζ = max(⟨w, a⟩, ζ_c)`,
-//! the tool covers the point where `E = |e|² − r² < 0`, where
+//! The level plane at the ceiling meets the tool only on a cylinder about its axis, or on the ball that it ends in, at
+//! all times. With `w` from the tip to a line's point in that plane and `e` from the nearest point of the axis at or
+//! above the centre of the ball, at the height `ζ = max(⟨w, a⟩, ζ_c)`, the tool covers the point where
+//! `E = |e|² − r² < 0`, where
 //!
 //! ```text
-//! e = w − ζ a,    E′/2 = −⟨e, b′ + ζ a′⟩,    E″/2 = S² + 2 τ⟨e, a′⟩ − ⟨e, a′⟩² − ζ⟨e, a″⟩    on the cylinder,
-//!                                            E″/2 = |C′|² − ⟨e, C″⟩                             on the ball,
+//! e = w − ζ a,  E′/2 = −⟨e, b′ + ζ a′⟩,
+//! E″/2 = S² + 2 τ⟨e, a′⟩ − ⟨e, a′⟩² − ζ⟨e, a″⟩  on the cylinder,
+//! E″/2 = |C′|² − ⟨e, C″⟩                        on the ball,
 //! ```
 //!
-//! with the part `S` of `b′ + ζ a′` across the axis, `τ = ⟨b′, a⟩`, and the centre `C` of the ball. `E′` does not jump. Where `E″ ≥ 0` for all lines, each is
-//! covered for one interval of times, or never. So the count of a line is the number of spans at whose start it is not covered, but later, and one more
-//! if the tool covers it from the beginning.
+//! with the part `S` of `b′ + ζ a′` across the axis, `τ = ⟨b′, a⟩`, and the centre `C` of the ball. `E′` does not jump.
+//! Where `E″ ≥ 0` for all lines, each is covered for one interval of times, or never. So the count of a line is the
+//! number of spans at whose start it is not covered, but later, and one more if the tool covers it from the beginning.
 
 mod span;
 

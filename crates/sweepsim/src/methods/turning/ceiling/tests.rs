@@ -1,12 +1,15 @@
 use super::*;
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Pose, Tool};
+use sweepsim_props::test_runner::{Config, TestRunner};
 use sweepsim_props::*;
 
 const SAMPLES: u32 = 800;
+const CASES: u32 = 256;
 
 /// How often a line is covered at the height of a ceiling, by samples; `None` where it is close.
 fn sampled(ceiling: &LeaningCeiling, parts: &[PathPart], line: [f64; 2]) -> Option<i32> {
@@ -26,82 +29,150 @@ fn sampled(ceiling: &LeaningCeiling, parts: &[PathPart], line: [f64; 2]) -> Opti
     (closest > 1e-4).then_some(count)
 }
 
-proptest! {
-    /// Counts are those of samples, on leaning tools that turn or do not.
-    #[test]
-    fn counts_are_those_of_samples(
-        ball in any::<bool>(),
-        tips in collection::vec([-3.0..3.0_f64, -3.0..3.0, -1.5..0.5], 2..6),
-        leans in collection::vec([-0.5..0.5_f64, -0.5..0.5], 6),
-        turns in any::<bool>(),
-    ) {
-        let tool = if ball { Tool::ball(1.5, 30.0) } else { Tool::flat(1.5, 30.0) }.unwrap();
-        let outline = Outline::new(&tool).unwrap();
-        let pose = |(n, tip): (usize, &[f64; 3])| {
-            let [u, v] = leans[if turns { n } else { 0 }];
-            Pose::new(*tip, [u, v, 1.0]).unwrap()
-        };
-        let poses: Vec<Pose> = tips.iter().enumerate().map(pose).collect();
-        let segments = poses.windows(2).flat_map(|pair| Segment::between(&pair[0], &pair[1]));
-        let parts: Vec<PathPart> = segments.map(|segment| PathPart::new(segment, 0, [0.0, 1.0])).collect();
-        let Some(own) = LeaningCeiling::new(&outline, 31.5, &parts, 1.0) else {
-            return Ok(());
-        };
-        prop_assert!(own.z > 1.0);
-        let grid = Grid::new([-9.0; 2], [9.0; 2], [30, 30]).unwrap();
-        let lattice = Lattice::all(&grid, [1e-9; 2]);
-        let mut harvest = Harvest::default();
-        let mut collector = Collector { lines: &lattice, harvest: &mut harvest };
-        let counts = own.counts(&parts, 1e-12, &mut collector).expect("some lines");
-        counts.close(own.z, &mut collector);
-        let mut found: BTreeMap<u32, i32> = BTreeMap::new();
-        for (line, crossing) in &harvest.crossings {
-            *found.entry(*line).or_default() -= i32::from(crossing.jump);
-        }
-        for (i, j) in (0..30).flat_map(|i| (0..30).map(move |j| (i, j))) {
-            let line = lattice.line(i, j) as u32;
-            let place = [lattice.coordinate(0, i), lattice.coordinate(1, j)];
-            if let Some(count) = sampled(&own, &parts, place) {
-                prop_assert_eq!(found.get(&line).copied().unwrap_or(0), count, "{:?}", place);
-                prop_assert!(harvest.open.iter().all(|(open, _)| *open != line));
-            }
-        }
-    }
+type Place = [f64; 3];
 
-    /// `E` is convex where that is said to be certain, for all lines that are covered at some time.
-    #[test]
-    fn covered_once(
-        ball in any::<bool>(),
-        tips in [[-5.0..5.0_f64, -5.0..5.0, -2.0..2.0], [-5.0..5.0_f64, -5.0..5.0, -2.0..2.0]],
-        leans in [[-1.0..1.0_f64, -1.0..1.0], [-1.0..1.0_f64, -1.0..1.0]],
-        span in [0.0..0.9_f64, 0.01..0.2_f64],
-        at in [0.0..1.0_f64, -1.0..1.0, -1.0..1.0],
-    ) {
-        let poses = [0, 1].map(|n| Pose::new(tips[n], [leans[n][0], leans[n][1], 1.0]).unwrap());
-        let centre = if ball { 1.5 } else { f64::NEG_INFINITY };
-        let ceiling = LeaningCeiling { z: 6.0, radius: 1.5, centre, highest: Vec::new(), spans: Vec::new() };
-        for segment in Segment::between(&poses[0], &poses[1]) {
-            let motion = motion(&segment).unwrap();
-            let [from, length] = span;
-            let ends = [motion.at(from), motion.at(from + length)];
-            let ends = [&ends[0], &ends[1]];
-            if !ceiling.is_convex(ends, &motion.bounds(ends)) {
-                continue;
-            }
-            // A line about the axis at some time.
-            let moment = motion.at(from + length * at[0]);
-            let share = (ceiling.z - moment.tip.z) / moment.axis.z;
-            let line = [0, 1].map(|k| moment.tip[k] + moment.axis[k] * share + 1.5 * at[k + 1]);
-            if ceiling.section(moment).value(line) >= 0.0 {
-                continue;
-            }let value = |t: f64| ceiling.section(motion.at(t)).value(line);
-            for n in 1..200 {
-                let (t, step) = (from + length * f64::from(n) / 200.0, length / 200.0);
-                let [a, b, c] = [value(t - step), value(t), value(t + step)];
-                prop_assert!(a + c - 2.0 * b > -1e-9, "{t} {a} {b} {c}");
-                let slope = ceiling.section(motion.at(t)).slope(line);
-                prop_assert!((slope - (value(t + 1e-6) - value(t - 1e-6)) / 2e-6).abs() < 1e-4 * (1.0 + slope.abs()));
-            }
+/// Whether there was a ceiling, and on how many lines a count was compared that is not 0.
+fn counted(ball: bool, tips: &[Place], leans: &[[f64; 2]; 6], turns: bool) -> Result<(bool, usize), TestCaseError> {
+    let tool = if ball {
+        Tool::ball(1.5, 30.0)
+    } else {
+        Tool::flat(1.5, 30.0)
+    }
+    .expect("a tool");
+    let outline = Outline::new(&tool).expect("a profile");
+    let pose = |(n, tip): (usize, &Place)| {
+        let [u, v] = leans[if turns { n } else { 0 }];
+        Pose::new(*tip, [u, v, 1.0]).expect("a pose")
+    };
+    let poses: Vec<Pose> = tips.iter().enumerate().map(pose).collect();
+    let segments = poses.windows(2).flat_map(|pair| Segment::between(&pair[0], &pair[1]));
+    let parts: Vec<PathPart> = segments.map(|segment| PathPart::new(segment, 0, [0.0, 1.0])).collect();
+    let Some(own) = LeaningCeiling::new(&outline, 31.5, &parts, 1.0) else {
+        return Ok((false, 0));
+    };
+    prop_assert!(own.z > 1.0);
+    let grid = Grid::new([-9.0; 2], [9.0; 2], [30, 30]).expect("a grid");
+    let lattice = Lattice::all(&grid, [1e-9; 2]);
+    let mut harvest = Harvest::default();
+    let mut collector = Collector {
+        lines: &lattice,
+        harvest: &mut harvest,
+    };
+    let counts = own.counts(&parts, 1e-12, &mut collector).expect("some lines");
+    counts.close(own.z, &mut collector);
+    let mut found: BTreeMap<u32, i32> = BTreeMap::new();
+    for (line, crossing) in &harvest.crossings {
+        *found.entry(*line).or_default() -= i32::from(crossing.jump);
+    }
+    let mut covered = 0;
+    for (i, j) in (0..30).flat_map(|i| (0..30).map(move |j| (i, j))) {
+        let line = lattice.line(i, j) as u32;
+        let place = [lattice.coordinate(0, i), lattice.coordinate(1, j)];
+        if let Some(count) = sampled(&own, &parts, place) {
+            prop_assert_eq!(found.get(&line).copied().unwrap_or(0), count, "{:?}", place);
+            prop_assert!(harvest.open.iter().all(|(open, _)| *open != line));
+            covered += usize::from(count > 0);
         }
     }
+    Ok((true, covered))
+}
+
+/// Counts are those of samples, on leaning tools that turn or do not.
+#[test]
+fn counts_are_those_of_samples() {
+    let seen = Cell::new([[0; 2]; 2]);
+    let lean = || [-0.5..0.5_f64, -0.5..0.5];
+    let cases = (
+        any::<bool>(),
+        collection::vec([-3.0..3.0_f64, -3.0..3.0, -1.5..0.5], 2..6),
+        [lean(), lean(), lean(), lean(), lean(), lean()],
+        any::<bool>(),
+    );
+    run(&cases, |(ball, tips, leans, turns)| {
+        let (ceiling, covered) = counted(ball, &tips, &leans, turns)?;
+        let mut all = seen.get();
+        all[usize::from(turns)][0] += usize::from(ceiling);
+        all[usize::from(turns)][1] += covered;
+        seen.set(all);
+        Ok(())
+    });
+    let seen = seen.get();
+    assert!(
+        seen.iter().all(|[ceilings, lines]| *ceilings > 20 && *lines > 1000),
+        "{seen:?}"
+    );
+}
+
+/// Whether it is said that `E` is convex for a line that is covered at some time: then it is, at all times.
+fn convex(
+    ball: bool,
+    (tips, leans): ([Place; 2], [[f64; 2]; 2]),
+    [from, length]: [f64; 2],
+    at: Place,
+) -> Result<bool, TestCaseError> {
+    let pose = |n: usize| Pose::new(tips[n], [leans[n][0], leans[n][1], 1.0]).expect("a pose");
+    let ceiling = LeaningCeiling {
+        z: 6.0,
+        radius: 1.5,
+        centre: if ball { 1.5 } else { f64::NEG_INFINITY },
+        highest: Vec::new(),
+        spans: Vec::new(),
+    };
+    let mut is_tried = false;
+    for segment in Segment::between(&pose(0), &pose(1)) {
+        let motion = motion(&segment).expect("a motion of this kind");
+        let ends = [motion.at(from), motion.at(from + length)];
+        let ends = [&ends[0], &ends[1]];
+        if !ceiling.is_convex(ends, &motion.bounds(ends)) {
+            continue;
+        }
+        // A line about the axis at some time.
+        let moment = motion.at(from + length * at[0]);
+        let share = (ceiling.z - moment.tip.z) / moment.axis.z;
+        let line = [0, 1].map(|k| moment.tip[k] + moment.axis[k] * share + 1.5 * at[k + 1]);
+        if ceiling.section(moment).value(line) >= 0.0 {
+            continue;
+        }
+        is_tried = true;
+        let value = |t: f64| ceiling.section(motion.at(t)).value(line);
+        for n in 1..200 {
+            let (t, step) = (from + length * f64::from(n) / 200.0, length / 200.0);
+            let [a, b, c] = [value(t - step), value(t), value(t + step)];
+            prop_assert!(a + c - 2.0 * b > -1e-9, "{t} {a} {b} {c}");
+            let slope = ceiling.section(motion.at(t)).slope(line);
+            let near = (value(t + 1e-6) - value(t - 1e-6)) / 2e-6;
+            prop_assert!((slope - near).abs() < 1e-4 * (1.0 + slope.abs()));
+        }
+    }
+    Ok(is_tried)
+}
+
+#[test]
+fn covered_once() {
+    let tried = Cell::new([0; 2]);
+    let tip = || [-5.0..5.0_f64, -5.0..5.0, -2.0..2.0];
+    let lean = || [-1.0..1.0_f64, -1.0..1.0];
+    let cases = (
+        any::<bool>(),
+        ([tip(), tip()], [lean(), lean()]),
+        [0.0..0.9_f64, 0.01..0.2],
+        [0.0..1.0_f64, -1.0..1.0, -1.0..1.0],
+    );
+    run(&cases, |(ball, poses, span, at)| {
+        let mut all = tried.get();
+        all[usize::from(ball)] += usize::from(convex(ball, poses, span, at)?);
+        tried.set(all);
+        Ok(())
+    });
+    let tried = tried.get();
+    assert!(tried.iter().all(|tried| *tried > 20), "{tried:?}");
+}
+
+fn run<S: Strategy>(strategy: &S, check: impl Fn(S::Value) -> Result<(), TestCaseError>) {
+    let mut runner = TestRunner::new(Config {
+        failure_persistence: None,
+        ..Config::with_cases(CASES)
+    });
+    let found = runner.run(strategy, check);
+    found.unwrap_or_else(|error| panic!("{error}"));
 }
