@@ -100,13 +100,15 @@ impl Turns {
     /// The same with exactly the axis and the angle of an arc, if they are the same but for rounding: tool and tip then
     /// turn as one rigid body, with the same weights to the bit.
     fn with_arc(self, course: &TipCourse) -> Self {
-        /// Rounding errors of orientations that are turned by an angle, and of the turn between them.
+        /// Rounding errors of orientations that are turned by an angle, and of the turn between them. Those of its axis
+        /// are as much larger as the angle is smaller.
         const ROUNDING: f64 = 16.0 * f64::EPSILON;
         let (Self::One { start, k, angle }, TipCourse::Arc(arc)) = (&self, course) else {
             return self;
         };
         let (normal, same_way) = (arc.normal_vector().into_inner(), (angle * arc.angle()).signum());
-        let is_same = (k * same_way - normal).norm() <= ROUNDING && (angle * same_way - arc.angle()).abs() <= ROUNDING;
+        let is_same = (k * same_way - normal).norm() * angle.abs().min(1.0) <= ROUNDING
+            && (angle * same_way - arc.angle()).abs() <= ROUNDING;
         if is_same {
             Self::One {
                 start: *start,
