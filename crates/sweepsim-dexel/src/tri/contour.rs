@@ -24,8 +24,12 @@ use super::held::Held;
 use super::lattice::{Hit, Lattice, LatticeEdge};
 use super::plane::{Place, Planes};
 use crate::mesh::{Mesh, MeshError, check_vertices};
+use crate::vector::{dot, length, normal_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+
+/// Two triangles lie on each other if the cosine of the angle between their normals is less.
+const FOLDED: f64 = -0.99;
 
 pub(crate) fn disagreements(solid: &TriDexels) -> usize {
     Lattice::new(solid).disagreements
@@ -62,7 +66,7 @@ pub(super) fn in_box(lattice: &Lattice, most: usize) -> Result<Made, MeshError> 
 }
 
 /// How often more is held, at most, where triangles cross.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 32;
 
 /// The surface of which as much is held as it takes that no triangles cross, as far as [`ROUNDS`] go.
 pub(crate) fn uncrossed(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
@@ -329,7 +333,8 @@ impl Face<'_> {
         Ring { corners, keys }
     }
 
-    /// Two triangles, along the diagonal that stays closer to the tangent plane.
+    /// Two triangles, along the diagonal that stays closer to the tangent plane; along the other one where they would lie
+    /// on each other, on a flat face beside an edge that bends inwards.
     fn halves(&self, lattice: &Lattice, mesh: &Mesh, [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
         let place = lattice.place(self.axis, self.at, self.hit);
         let p = [a, b, c, d].map(|n| mesh.vertices[n as usize]);
@@ -341,11 +346,17 @@ impl Face<'_> {
                 .abs(),
             None => [0, 1, 2].map(|k| (a[k] - b[k]).powi(2)).iter().sum::<f64>(),
         };
-        if off(p[0], p[2]) <= off(p[1], p[3]) {
-            [[a, b, c], [a, c, d]]
-        } else {
-            [[a, b, d], [b, c, d]]
+        let normal = |corners: [usize; 3]| normal_of(corners.map(|k| p[k]));
+        let is_folded = |halves: [[usize; 3]; 2]| {
+            let [n, m] = halves.map(normal);
+            dot(n, m) < FOLDED * length(n) * length(m)
+        };
+        let mut ways = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]];
+        if off(p[0], p[2]) > off(p[1], p[3]) {
+            ways.swap(0, 1);
         }
+        let way = usize::from(is_folded(ways[0]) && !is_folded(ways[1]));
+        ways[way].map(|half| half.map(|k| [a, b, c, d][k]))
     }
 
     /// Triangles around a vertex at the interval end, with vertices on the faces that two curves cross.

@@ -1,4 +1,4 @@
-use crate::common::boxed;
+use crate::common::{boxed, normal_of};
 use std::collections::BTreeMap;
 use sweepsim_dexel::internals::contour;
 use sweepsim_dexel::*;
@@ -75,6 +75,32 @@ fn boxes_are_sharp() {
     // All vertices are on faces, each edge is followed, each corner is reproduced.
     assert_eq!((on[0], on[3]), (0, 8));
     assert!(on[2] > 100);
+}
+
+/// Beside an edge that bends inwards, no triangle of a flat face lies on another.
+#[test]
+fn flat_faces_are_not_folded() {
+    let [base, axis] = [[1.3, -0.7, -2.1], [0.0, 0.0, 1.0]];
+    let (radius, height) = (6.3, 20.0);
+    let hole = Stock::Cylinder {
+        base,
+        axis,
+        radius,
+        height,
+    };
+    let (min, max) = ([-9.1; 3], [9.1; 3]);
+    let part = Stock::Difference(Box::new(Stock::Block { min, max }), vec![hole]);
+    let soup = solid(24, &part).surface().unwrap().soup().unwrap();
+    for level in [base[2], max[2]] {
+        let is_level = |t: &&[[f64; 3]; 3]| t.iter().all(|p| (p[2] - level).abs() < 1e-6);
+        let heights: Vec<f64> = soup
+            .triangles
+            .iter()
+            .filter(is_level)
+            .map(|t| normal_of(*t)[2])
+            .collect();
+        assert!(heights.len() > 300 && heights.iter().all(|up| *up >= 0.0));
+    }
 }
 
 /// A box around the origin, rotated about an axis by an angle, as triangles; and its three directions.

@@ -156,13 +156,13 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
     // A checker of heights takes it as given that triangles do not cross.
     let is_height = |asked: &&Asked| asked.measure == Measure::Height;
     let heights = asked.statements.iter().filter(is_height);
-    for number in heights.flat_map(|asked| &asked.obstacles) {
+    let crosses = heights.flat_map(|asked| &asked.obstacles).find_map(|number| {
         let soup = asked.obstacles[*number].triangles.as_ref();
         let solid = soup
             .map_err(String::clone)
             .and_then(|soup| solids::of_mesh(soup, "the target", 0.0, (None, &())));
-        solid.map_err(|why| JobError::file(file, why))?;
-    }
+        solid.err()
+    });
     let own = asked.scene();
     drop(asked);
     if own.digest() != scene || own.questions.len() != claims.len() {
@@ -176,7 +176,11 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
             .as_ref()
             .map(|claim| (claim.bound, claim.witness.as_ref().map(|witness| witness.depth))),
         checked: claim.map_or_else(Checked::default, |claim| {
-            sweepsim_check::check(&own, question, &claim, threads)
+            let mut checked = sweepsim_check::check(&own, question, &claim, threads);
+            if question.measure == Measure::Height && checked.wrong.is_none() {
+                checked.wrong.clone_from(&crosses);
+            }
+            checked
         }),
     };
     Ok(CheckedCertificate {

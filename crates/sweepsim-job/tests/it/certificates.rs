@@ -3,9 +3,10 @@
 use crate::walls::{PROGRAM, slotted};
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use sweepsim_check::{Certificate, digest_of};
-use sweepsim_job::{Measure, Output, Request, check};
+use sweepsim_dexel::TriangleSoup;
+use sweepsim_job::{CheckedStatement, Measure, Output, Request, check};
 use tempfile::TempDir;
 
 const JOB: &str = r#"Job(
@@ -22,8 +23,12 @@ const JOB: &str = r#"Job(
 
 /// A folder with a job.
 fn with_job(job: &str) -> (TempDir, PathBuf) {
+    with_target(job, &slotted([15.0, 25.0], -4.0))
+}
+
+/// The same, with another target.
+fn with_target(job: &str, target: &TriangleSoup) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
-    let target = slotted([15.0, 25.0], -4.0);
     let corner = |p: &[f64; 3]| format!("vertex {} {} {}\n", p[0], p[1], p[2]);
     let facet = |corners: &[[f64; 3]; 3]| {
         let corners: String = corners.iter().map(corner).collect();
@@ -44,7 +49,13 @@ fn with_job(job: &str) -> (TempDir, PathBuf) {
 /// The same, with the certificate of the job there.
 fn certified() -> (TempDir, PathBuf, Vec<u8>) {
     let (folder, job) = with_job(JOB);
-    let outcome = Request::from_file(&job)
+    let (file, text) = certificate(&folder, &job);
+    (folder, file, text)
+}
+
+/// The certificate of a job, in its folder.
+fn certificate(folder: &TempDir, job: &Path) -> (PathBuf, Vec<u8>) {
+    let outcome = Request::from_file(job)
         .plan()
         .expect("a plan")
         .run(&())
@@ -52,7 +63,22 @@ fn certified() -> (TempDir, PathBuf, Vec<u8>) {
     let text = outcome.certificate().expect("a notation").expect("something is proven");
     let file = folder.path().join("certificate.json");
     fs::write(&file, &text).expect("written");
-    (folder, file, text.into_bytes())
+    (file, text.into_bytes())
+}
+
+/// What is said of targets as solids is not proven; the rest is.
+#[test]
+fn a_certificate_of_a_target_that_crosses_itself_can_be_checked() {
+    let mut target = slotted([15.0, 25.0], -4.0);
+    let peg = TriangleSoup::block([30.2, 30.2, -5.0], [30.3, 30.3, 1.0]);
+    target.triangles.extend(peg.triangles);
+    let (folder, job) = with_target(JOB, &target);
+    let (file, _) = certificate(&folder, &job);
+    let checked = check(&file, 1).expect("it belongs to its files");
+    let of = |about: &str| checked.statements.iter().find(|statement| statement.about == about);
+    assert!(of("fixture").is_some_and(CheckedStatement::holds));
+    assert!(of("excess").is_some_and(|excess| !excess.holds()));
+    assert!(!checked.holds());
 }
 
 #[test]
