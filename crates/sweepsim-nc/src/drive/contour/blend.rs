@@ -168,7 +168,8 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
     let [u, v, w] = plane;
     let refuse = |what: String, expected: &str| Err(NcProblem::unsupported(what, expected.to_owned()));
     let p = first.end;
-    if start[w] != p[w] || second.end[w] != p[w] {
+    let leaves = |stroke: &Stroke| stroke.bend.is_some() && stroke.plane != plane;
+    if start[w] != p[w] || second.end[w] != p[w] || leaves(first) || leaves(second) {
         if !corner.strict {
             return Ok(Outcome::OutOfPlane);
         }
@@ -280,6 +281,7 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
         between: Stroke {
             end: at(two),
             bend,
+            plane,
             place: corner.place,
             feed: corner.feed.or(second.feed),
             ..*second

@@ -77,7 +77,12 @@ impl Compensation {
             let mut end = this.current;
             set(plane, &mut end, at);
             this.current = end;
-            out.push(Item::Stroke(Stroke { end, bend, ..*stroke }));
+            out.push(Item::Stroke(Stroke {
+                end,
+                bend,
+                plane,
+                ..*stroke
+            }));
         };
         if self.side.corners != Corners::Lines {
             let sweep = if self.side.left { -turn } else { turn };
