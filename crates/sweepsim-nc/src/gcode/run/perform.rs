@@ -46,6 +46,8 @@ impl Reader {
         }
         self.check_plane_blocks(block)
             .map_err(|problem| (problem, block.all()))?;
+        self.keep_register(block)
+            .map_err(|problem| (problem, block.span('D')))?;
         let fixture = self.fixture_offset(block);
         let plan = self.modal(block)?;
         if let Some(offset) = fixture {

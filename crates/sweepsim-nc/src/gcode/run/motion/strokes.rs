@@ -15,9 +15,36 @@ impl Reader {
         self.track.go(stroke)
     }
 
+    /// D stays until another one, on controls of Fanuc's kind; on LinuxCNC it is about its own block.
+    ///
+    /// Fanuc reads a D beside a contour, without G41, as a change of the radius along the block.
+    pub(crate) fn keep_register(&mut self, block: &Block) -> Result<(), NcProblem> {
+        let has = |codes: &[f64]| {
+            block
+                .words()
+                .iter()
+                .any(|w| w.letter == 'G' && codes.contains(&w.value))
+        };
+        let register = block.get('D').filter(|d| *d >= 0.0 && d.fract() == 0.0);
+        if self.rules.controller == Some(Controller::LinuxCnc) || has(&[41.1, 42.1, 65.0]) || register.is_none() {
+            return Ok(());
+        }
+        self.modes.register = register;
+        let Some(side) = self.track.side().filter(|_| !has(&[40.0, 41.0, 42.0])) else {
+            return Ok(());
+        };
+        if (0.5 * self.cutter_diameter(register)?.abs() - side.radius).abs() > 1e-9 {
+            return Err(NcProblem::unsupported(
+                "a change of the radius while cutter compensation is on is",
+                "expected G40, and G41 or G42 with the other D, before it",
+            ));
+        }
+        Ok(())
+    }
+
     /// The diameter D in the table, or the tool's own.
     pub(super) fn cutter_diameter(&mut self, d: Option<f64>) -> Result<f64, NcProblem> {
-        let number = match d {
+        let number = match d.or(self.modes.register) {
             Some(d) => Self::tool_number(d)?,
             None => self.track.tool.unwrap_or(0),
         };
