@@ -37,7 +37,29 @@ impl Reader<'_> {
             round_ends: self.modes.round_ends,
             tangent: 1e-6,
         };
+        // Beside a contour the last move ends at right angles, and this one begins as if compensation had been off.
+        self.track.end_compensation(None).map_err(whole)?;
+        self.modes.compensated = Some(self.modes.compensation());
         self.track.compensate(side, self.modes.plane).map_err(whole)
+    }
+
+    /// Refuses to go on beside a contour in another way than it began.
+    pub(super) fn check_compensation(&self) -> Result<(), NcProblem> {
+        let Some(began) = self.modes.compensated.filter(|_| self.track.compensates()) else {
+            return Ok(());
+        };
+        let now = self.modes.compensation();
+        let what = match () {
+            () if now.plane != began.plane => "the plane",
+            () if now.edge != began.edge => "D",
+            () if now.allowance != began.allowance => "OFFN",
+            () if now != began => "G450, G451 or DISC",
+            () => return Ok(()),
+        };
+        Err(NcProblem::unsupported(
+            format!("a change of {what} while cutter compensation is on is"),
+            "expected G40 before it, or G41 or G42 again with it",
+        ))
     }
 
     /// The radius of the tool's edge, with its allowance. `unknown`: its diameter where nobody tells it, in mm.

@@ -74,6 +74,32 @@ fn a_square_by_hand() {
     );
 }
 
+/// *Sinumerik 808D*, Special cases of the tool radius compensation: the last move ends at right angles to it, the block with the code begins
+/// anew.
+#[test]
+fn the_side_changes_on_siemens_as_if_compensation_began_anew() {
+    let text = |code: &str| format!("T1 D1 F100\nG0 X-10 Y0 Z0\nG1 G41 X0\nX10\n{code} X20\nX30\nG40 X40\n");
+    let ends = |code: &str| tips(&read(&text(code), false, &options(2.0)));
+    let expected = |side: f64| {
+        [
+            [-10.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [10.0, 1.0, 0.0],
+            [20.0, side, 0.0],
+            [30.0, side, 0.0],
+            [40.0, 0.0, 0.0],
+        ]
+    };
+    assert_near(&ends("G42"), &expected(-1.0));
+    assert_near(&ends("G41"), &expected(1.0));
+    // Even into an inside corner.
+    let inside = "T1 D1 F100\nG0 X-10 Y0 Z0\nG1 G41 X0\nX10\nG41 Y10\nY20\nG40 Y30\n";
+    assert_near(
+        &tips(&read(inside, false, &options(2.0)))[2..5],
+        &[[10.0, 1.0, 0.0], [9.0, 10.0, 0.0], [9.0, 20.0, 0.0]],
+    );
+}
+
 #[test]
 fn oversizes_of_heidenhain() {
     let text = |call: &str| {
