@@ -4,7 +4,7 @@ use super::interpreter::Reader;
 use super::language::expression::Value;
 use super::state::{Motion, PoleFrom};
 use super::words::{Action, Meaning, Words};
-use crate::drive::{CompensationSettings, Corner, CornerShape, Corners, DiameterAsked};
+use crate::drive::{CompensationSettings, Corner, CornerShape, Corners, DiameterAsked, end_at_angle};
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -118,8 +118,9 @@ impl Reader<'_> {
                 "FRC" => action.corner_feed = feed,
                 "FRCM" => self.modes.corner_feed = feed,
                 "DISC" => self.modes.distortion = word.value,
-                "ANG" if word.value != 0.0 => {
-                    let problem = NcProblem::unsupported("ANG is", "expected the contour by lines and arcs");
+                "ANG" if words.any(&["X", "Y", "Z"]).is_none() => {
+                    let problem =
+                        NcProblem::unsupported("ANG without an end is", "expected one coordinate of the plane with it");
                     return Err((problem, word.span.clone()));
                 }
                 _ => continue,
@@ -134,6 +135,33 @@ impl Reader<'_> {
                 action.corner = Some(made);
             }
         }
+        Ok(())
+    }
+
+    /// The coordinate of the plane that `ANG` leaves to the angle of the line.
+    pub(super) fn along_angle(&self, words: &Words, to: &mut [Option<f64>; 3]) -> Result<(), Located> {
+        let Some(word) = words.get("ANG") else { return Ok(()) };
+        let fail = |problem| Err((problem, word.span.clone()));
+        let [u, v, _] = self.modes.plane;
+        let given = [u, v].map(|k| words.get(["X", "Y", "Z"][k]).is_some());
+        if given[0] == given[1] || !matches!(self.modes.motion, Motion::Rapid | Motion::Feed) {
+            let problem =
+                "ANG beside both coordinates of the plane, or neither, or in an arc: expected a line and one of them";
+            return fail(NcProblem::syntax(problem));
+        }
+        let here = self.track.xyz;
+        let ([Some(a), Some(b)], [Some(x), Some(y)]) = ([u, v].map(|k| here[k]), [u, v].map(|k| to[k])) else {
+            return Ok(());
+        };
+        let end = end_at_angle([a, b], [x, y], given[0], word.value.to_radians());
+        let Some([a, b]) = end else {
+            return fail(NcProblem::value(
+                "ANG",
+                word.value,
+                "an angle at which the line gets there",
+            ));
+        };
+        (to[u], to[v]) = (Some(a), Some(b));
         Ok(())
     }
 

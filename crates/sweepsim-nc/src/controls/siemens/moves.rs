@@ -246,6 +246,7 @@ impl Reader<'_> {
             self.track.xyz = xyz;
             return Ok(None);
         }
+        self.along_angle(words, &mut xyz)?;
         if let [Some(x), Some(y), Some(z)] = xyz {
             if self.track.known().is_none()
                 && matches!(

@@ -337,7 +337,9 @@ impl Compensation {
                     // The turn that differs least from the programmed one.
                     let sweep = angle + TAU * ((bend.sweep - angle) / TAU).round();
                     let reversed = sweep * bend.sweep < 0.0 && sweep.abs() * length(b) > 1e-6;
-                    let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > 0.0254;
+                    // Corners that count as none leave a gap of so much.
+                    let gap = self.side.tangent * self.side.radius;
+                    let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > gap.max(0.0254);
                     bend.sweep = sweep;
                     reversed || longer && !extends && !self.extended
                 }

@@ -112,6 +112,16 @@ pub(crate) fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
     }
 }
 
+/// The end of a line at an angle (in radians) of which one coordinate is given, the first or the second; `None` if the line never has it.
+pub(crate) fn end_at_angle(start: Flat, [x, y]: Flat, first_is_given: bool, angle: f64) -> Option<Flat> {
+    let (sin, cos) = angle.sin_cos();
+    let (goes, way) = match first_is_given {
+        true => (cos, x - start[0]),
+        false => (sin, y - start[1]),
+    };
+    (goes.abs() > 1e-9).then(|| plus(start, way / goes, [cos, sin]))
+}
+
 /// The direction of an arc about `centre` at `at`.
 pub(crate) fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Flat {
     let [x, y] = minus(at, centre);

@@ -1,6 +1,6 @@
 //! Slots that several moves make narrower than the tool: corners compare neighbouring moves only, as controls without a check do.
 //!
-//! The tool's moves so far are compared with the moves of the contour that are not their neighbours, those of the look-ahead before and after. The move that
+//! The tool's moves so far are compared with all other moves of the contour, those of the look-ahead before and after. The move that
 //! switches compensation on is none of the contour.
 
 use std::collections::VecDeque;
@@ -54,7 +54,7 @@ impl Narrow {
         let found = self
             .tool
             .iter()
-            .filter(|tool| tool.index + 2 <= index)
+            .filter(|tool| tool.index < index)
             .find_map(|tool| clash(tool, &element, radius));
         keep(&mut self.contour, element);
         self.report(found)
@@ -78,7 +78,7 @@ impl Narrow {
         let found = self
             .contour
             .iter()
-            .filter(|other| other.index.abs_diff(index) >= 2)
+            .filter(|other| other.index != index)
             .find_map(|other| clash(&element, other, radius));
         keep(&mut self.tool, element);
         self.report(found)

@@ -140,6 +140,10 @@ impl Reader {
             _ => "XYZABCIJKR",
         };
         let used = block.first(letters);
+        if let Some(word) = block.after_comma() {
+            self.check_after_comma(word, used.is_some())
+                .map_err(|problem| (problem, word.span()))?;
+        }
         match (used, self.modes.motion) {
             (None, Some(MotionMode::Arc { .. })) if plan.motion.is_some() => Err(whole(NcProblem::syntax(
                 "an arc without an end or a centre: expected X, Y, Z, I, J, K or R",

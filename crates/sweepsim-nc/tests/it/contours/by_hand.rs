@@ -244,6 +244,30 @@ fn corner_words() {
 }
 
 #[test]
+fn lines_by_their_angle() {
+    let text = "F100 G0 X0 Y0 Z0\nG1 ANG=45 X10\nG91 Y10 ANG=120 RND=1\nG90 X20 ANG=0\nG18 Z10 ANG=30\nG0 ANG=90 X0\n";
+    let found = tips(&read(text, false, &options(2.0)));
+    let x = 10.0 - 10.0 / 3.0_f64.sqrt();
+    let up = 20.0 + 10.0 * 30.0_f64.to_radians().tan();
+    assert_near(&found[1..2], &[[10.0, 10.0, 0.0]]);
+    assert_near(&found[4..], &[[20.0, 20.0, 0.0], [up, 20.0, 10.0], [0.0, 20.0, 10.0]]);
+    let length = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    // Rounded at (x, 20), where the lines meet at 60 degrees.
+    let cut = 3.0_f64.sqrt();
+    assert!((length(found[2], [x, 20.0, 0.0]) - cut).abs() < 1e-9 && (found[3][0] - x - cut).abs() < 1e-9);
+    for (block, expected) in [
+        ("G1 ANG=30", "ANG without an end"),
+        ("G1 X5 Y5 ANG=30", "ANG beside both"),
+        ("G1 X5 ANG=90", "ANG is 90"),
+        ("G2 X5 ANG=30 CR=9", "ANG beside both"),
+    ] {
+        let error = sweepsim_nc::siemens::read(&format!("F100 G0 X0 Y0 Z0\n{block}\n"), &options(2.0));
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn polar_coordinates_and_tangential_arcs() {
     let mut exact = ReadOptions::default();
     exact.exact_arcs = true;

@@ -213,3 +213,16 @@ fn the_register_stays_until_another_one() {
     );
     assert!(ends(&change.replace("D3", "D21"), Controller::Fanuc).is_ok());
 }
+
+/// LinuxCNC takes corners of up to 0.05 radians for none: the offsets may have a gap there.
+#[test]
+fn a_small_corner_before_an_arc_is_none_on_linuxcnc() {
+    let text = "G21 G90 G0 X-20 Y0 Z0\nG42.1 D5\nG1 X-10 F100\nX0\nG2 X1.396 Y-39.976 I0.698 J-19.988\nG40\nG1 X-20\n";
+    let mut options = options(Controller::LinuxCnc);
+    options.exact_arcs = true;
+    let found = tips(&gcode::read(text, &options).unwrap());
+    assert_near(&found[2..3], &[[0.0, -2.5, 0.0]]);
+    // The arc ends beside its own end.
+    let [x, y, _] = found[3];
+    assert!(((x - 0.698).hypot(y + 19.988) - 17.5).abs() < 2e-3, "{found:?}");
+}
