@@ -168,6 +168,24 @@ fn corners_that_meet_on_arcs() {
     assert_near(&tips(&found)[2..4], &[[3.0 - 3_f64.sqrt(), -1.0, 0.0], [3.0, 2.0, 0.0]]);
 }
 
+/// Numbers are rounded to 0.001 mm: lines and arcs that are meant to be tangential are not, and their offsets miss each other.
+#[test]
+fn tangential_moves_of_rounded_numbers() {
+    for (corner, contour) in [
+        ("G451", "G1 X3.696 Y18.881\nG2 X13.713 Y26.484 I9.271 J-1.815\nG1 X23\n"),
+        (
+            "G450",
+            "G1 X1.855 Y-3.448\nG3 X7.541 Y-2.718 I2.703 J1.454\nG3 X6.160 Y-2.731 I-0.684 J-0.697\n",
+        ),
+    ] {
+        for side in ["G41", "G42"] {
+            let text = format!("T1 D1 F100 {corner}\nG0 X-2 Y-10 Z0\nG1 {side} X0 Y0\n{contour}G1 G40 X0 Y60\n");
+            let program = read(&text, false, &options(0.5));
+            assert!(program.notes.is_empty(), "{text}{:?}", program.notes);
+        }
+    }
+}
+
 #[test]
 fn corner_words() {
     let mut exact = ReadOptions::default();
@@ -237,6 +255,13 @@ fn corner_words() {
             [10.0, 20.0, 0.0],
         ],
     );
+    // Where numbers are rounded, a line may go on at an angle of almost nothing: no corner.
+    for turned in ["X20 Y0.00000001", "X20 Y0.000001", "X20 Y-0.000002"] {
+        assert_eq!(go(&format!("RND=2\n{turned} RNDM=5")).len(), 5, "{turned}");
+    }
+    // A line and an arc that are tangential but for rounding, as RNDM finds them.
+    let tangential = "F9 G0 X0 Y0 Z0\nG1 RNDM=2.178 X-2.157 Y1.669\nG2 X-4.257 Y4.751 I3.693 J4.773\n";
+    assert_eq!(tips(&read(tangential, false, &exact)).len(), 3);
     // The rounding of Klartext has the line of its block, and its feed.
     let klartext = read("L X+0 Y+0 Z+0 FMAX\nL X+10 F9\nRND R2 F4\nL Y+10\n", true, &exact);
     let lines: Vec<(usize, Option<f64>)> = klartext.poses.iter().map(|pose| (pose.line, pose.feed)).collect();
