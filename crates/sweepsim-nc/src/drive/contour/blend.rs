@@ -6,10 +6,9 @@ use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, meetings, minu
 use super::stroke::{ArcPlane, Bend, ProgramPlace, Stroke};
 use crate::text::error::NcProblem;
 
-/// Moves that turn by no more, in radians, go on straight: where their offsets meet, rounding would tell.
-const STRAIGHT: f64 = 1e-6;
-/// Moves that turn by less are meant to be tangential: where rounded numbers leave no room for a corner, there is none.
-const TANGENTIAL: f64 = 0.01;
+/// The sine of the turn, one degree, up to which a corner has no length (*Sinumerik ISO Milling*, Optional chamfering and corner rounding, as
+/// on Fanuc): moves that are meant to be tangential are that only up to rounded numbers.
+const TANGENTIAL: f64 = 0.017_452;
 
 /// What is made of a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,7 +182,8 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
             "expected both moves in the plane",
         );
     }
-    if first.rapid || second.rapid {
+    // Siemens: "F, FRC and FRCM are not active when a chamfer is traversed with G0".
+    if corner.strict && (first.rapid || second.rapid) {
         return refuse(
             format!("{} at a rapid is", corner.word),
             "expected it between two feed moves",
@@ -201,7 +201,7 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
     }
     let (ta, tb) = (a.direction(a.end), b.direction(b.start));
     let turn = cross(ta, tb);
-    if turn.abs() <= STRAIGHT && dot(ta, tb) > 0.0 {
+    if turn.abs() <= TANGENTIAL && dot(ta, tb) > 0.0 {
         return Ok(Outcome::InLine);
     }
     let too_large = |size: f64, takes: f64| {
@@ -222,12 +222,8 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
     let (one, two, bend) = match corner.shape {
         CornerShape::Round(radius) => {
             let left = turn.signum();
-            let no_room = |takes: f64| match turn.abs() < TANGENTIAL && dot(ta, tb) > 0.0 {
-                true => Ok(Outcome::InLine),
-                false => Err(too_large(radius, takes)),
-            };
             let (Some(inner), Some(outer)) = (a.offset(left * radius), b.offset(left * radius)) else {
-                return no_room(radius);
+                return Err(too_large(radius, radius));
             };
             let corner_at = a.end;
             let fits = |centre: &Flat| {
@@ -238,12 +234,12 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
                 .into_iter()
                 .min_by(|m, n| length(minus(*m, corner_at)).total_cmp(&length(minus(*n, corner_at))));
             let Some(centre) = found else {
-                return no_room(radius);
+                return Err(too_large(radius, radius));
             };
             let (before, after) = fits(&centre);
             if !(before >= -slack && before <= 1.0 + 1e-9 && after >= -1e-9 && after <= 1.0 + slack) {
                 let takes = ((1.0 - before) * a.length).max(after * b.length);
-                return no_room(takes);
+                return Err(too_large(radius, takes));
             }
             let (one, two) = (a.foot(centre), b.foot(centre));
             let (from, to) = (minus(one, centre), minus(two, centre));

@@ -262,6 +262,20 @@ fn corner_words() {
     // A line and an arc that are tangential but for rounding, as RNDM finds them.
     let tangential = "F9 G0 X0 Y0 Z0\nG1 RNDM=2.178 X-2.157 Y1.669\nG2 X-4.257 Y4.751 I3.693 J4.773\n";
     assert_eq!(tips(&read(tangential, false, &exact)).len(), 3);
+    // Before a rapid, too: the rounding is no rapid.
+    let before_rapid = read("F9 G0 X0 Y0 Z0\nG1 RNDM=2 X10\nG0 Y10\nZ5\n", false, &exact);
+    assert_near(
+        &tips(&before_rapid),
+        &[
+            [0.0; 3],
+            [8.0, 0.0, 0.0],
+            [10.0, 2.0, 0.0],
+            [10.0, 10.0, 0.0],
+            [10.0, 10.0, 5.0],
+        ],
+    );
+    let rapids: Vec<bool> = before_rapid.poses.iter().map(|pose| pose.rapid).collect();
+    assert_eq!(rapids, [true, false, false, true, true]);
     // The rounding of Klartext has the line of its block, and its feed.
     let klartext = read("L X+0 Y+0 Z+0 FMAX\nL X+10 F9\nRND R2 F4\nL Y+10\n", true, &exact);
     let lines: Vec<(usize, Option<f64>)> = klartext.poses.iter().map(|pose| (pose.line, pose.feed)).collect();

@@ -87,7 +87,6 @@ fn what_cannot_be_compensated_is_an_error() {
             "G1 X10 CHF=1\nG2 X20 Y10 CR=10\n",
             "4:4: CHF at an arc is not supported yet",
         ),
-        ("G1 X10 RND=1\nG0 Y10\n", "4:4: RND at a rapid is not supported yet"),
         ("G1 X10 RND=-1\nY10\n", "3:8: RND is -1, but must be 0 or positive"),
         ("G1 AP=30\n", "3:4: polar coordinates without AP and RP"),
         ("G1 AP=30 RP=4 X5\n", "3:15: X beside polar coordinates"),
