@@ -108,8 +108,8 @@ impl Track {
         Ok(())
     }
 
-    /// Ends cutter compensation: the next move goes straight from where the tool is. With `next`, it may not have to go round the end
-    /// of the contour.
+    /// Ends cutter compensation: the next move goes straight from where the tool is. With `next`, it may not have to go
+    /// round the end of the contour.
     pub fn end_compensation(&mut self, next: Option<[f64; 3]>) -> Result<(), NcProblem> {
         self.settle()?;
         if let Some(compensation) = self.contour.compensation.take() {

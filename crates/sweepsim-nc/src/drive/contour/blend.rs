@@ -6,8 +6,8 @@ use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, meetings, minu
 use super::stroke::{ArcPlane, Bend, ProgramPlace, Stroke};
 use crate::text::error::NcProblem;
 
-/// The sine of the turn, one degree, up to which a corner has no length (*Sinumerik ISO Milling*, Optional chamfering and corner rounding, as
-/// on Fanuc): moves that are meant to be tangential are that only up to rounded numbers.
+/// The sine of the turn, one degree, up to which a corner has no length (*Sinumerik ISO Milling*, Optional chamfering and
+/// corner rounding, as on Fanuc): moves that are meant to be tangential are that only up to rounded numbers.
 const TANGENTIAL: f64 = 0.017_452;
 
 /// What is made of a corner.

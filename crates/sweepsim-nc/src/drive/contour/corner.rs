@@ -112,7 +112,8 @@ pub(crate) fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
     }
 }
 
-/// The end of a line at an angle (in radians) of which one coordinate is given, the first or the second; `None` if the line never has it.
+/// The end of a line at an angle (in radians) of which one coordinate is given, the first or the second; `None` if the
+/// line never has it.
 pub(crate) fn end_at_angle(start: Flat, [x, y]: Flat, first_is_given: bool, angle: f64) -> Option<Flat> {
     let (sin, cos) = angle.sin_cos();
     let (goes, way) = match first_is_given {

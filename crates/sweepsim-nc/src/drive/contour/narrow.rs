@@ -1,8 +1,9 @@
-//! Slots that several moves make narrower than the tool: corners compare neighbouring moves only, as controls without a check do.
+//! Slots that several moves make narrower than the tool: corners compare neighbouring moves only, as controls without a
+//! check do.
 //!
-//! The tool's moves so far are compared with all other moves of the contour, those of the look-ahead before and after. The move that
-//! switches compensation on is none of the contour. Nor is an arc that is its first move or its last: on such arcs the tool comes to the
-//! contour and leaves it.
+//! The tool's moves so far are compared with all other moves of the contour, those of the look-ahead before and after. The
+//! move that switches compensation on is none of the contour. Nor is an arc that is its first move or its last: on such arcs the
+//! tool comes to the contour and leaves it.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;

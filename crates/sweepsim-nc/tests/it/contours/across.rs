@@ -34,8 +34,8 @@ fn a_plunge_before_the_entry_is_straight_down() {
 
 #[test]
 fn a_plunge_between_an_arc_and_an_inside_corner() {
-    // Three quarters of a circle about (-10, 0), down, and back through its middle: the offsets x = -1 (from there on left) and
-    // the circle of radius 9 meet.
+    // Three quarters of a circle about (-10, 0), down, and up to its middle: the offset x = -11 and the circle of radius 9
+    // meet.
     let text = |down: &str| {
         format!("T1 D1 F100\nG0 X5 Y-10 Z0\nG1 G41 X0 Y-10\nY0\nG3 X-10 Y-10 I-10 J0\n{down}G1 Y0\nG40 X-10 Y5\n")
     };

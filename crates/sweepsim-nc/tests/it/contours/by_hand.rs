@@ -74,8 +74,8 @@ fn a_square_by_hand() {
     );
 }
 
-/// *Sinumerik 808D*, Special cases of the tool radius compensation: the last move ends at right angles to it, the block with the code begins
-/// anew.
+/// *Sinumerik 808D*, Special cases of the tool radius compensation: the last move ends at right angles to it, the block with
+/// the code begins anew.
 #[test]
 fn the_side_changes_on_siemens_as_if_compensation_began_anew() {
     let text = |code: &str| format!("T1 D1 F100\nG0 X-10 Y0 Z0\nG1 G41 X0\nX10\n{code} X20\nX30\nG40 X40\n");
@@ -168,7 +168,8 @@ fn corners_that_meet_on_arcs() {
     assert_near(&tips(&found)[2..4], &[[3.0 - 3_f64.sqrt(), -1.0, 0.0], [3.0, 2.0, 0.0]]);
 }
 
-/// Numbers are rounded to 0.001 mm: lines and arcs that are meant to be tangential are not, and their offsets miss each other.
+/// Numbers are rounded to 0.001 mm: lines and arcs that are meant to be tangential are not, and their offsets miss each
+/// other.
 #[test]
 fn tangential_moves_of_rounded_numbers() {
     for (corner, contour) in [

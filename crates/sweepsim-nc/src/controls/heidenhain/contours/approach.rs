@@ -1,7 +1,9 @@
-//! Approach to a contour and departure from it: `APPR LT LN CT LCT`, `DEP LT LN CT LCT`; with a `P` before, the point is in polar coordinates.
+//! Approach to a contour and departure from it: `APPR LT LN CT LCT`, `DEP LT LN CT LCT`; with a `P` before, the point is
+//! in polar coordinates.
 //!
-//! Source: *TNC 620, Klartext programming*, Contour approach and departure; *iTNC 530* (340 420), 6.3, for `R0`. The tool goes from where it is to an auxiliary point beside which the contour's compensation begins, and from there tangentially, or at a
-//! right angle (`LN`), to the first point of the contour; the departure is the same backwards.
+//! Source: *TNC 620, Klartext programming*, Contour approach and departure; *iTNC 530* (340 420), 6.3, for `R0`. The tool
+//! goes from where it is to an auxiliary point beside which the contour's compensation begins, and from there
+//! tangentially, or at a right angle (`LN`), to the first point of the contour; the departure is the same backwards.
 
 use std::f64::consts::TAU;
 

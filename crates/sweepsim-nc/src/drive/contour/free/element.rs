@@ -170,7 +170,7 @@ impl<'a> Given<'a> {
         let fits = |point: &Flat| {
             loci.iter().chain([carrier]).all(|locus| locus.off(*point) < SAME) && carrier.is_ahead(start, *point)
         };
-        // Where the carrier lies along a locus, or touches it, another one tells the place; where it touches both, they do.
+        // Where the carrier lies along a locus or touches it, another one tells the place; where it touches both, they do.
         let second = others.first();
         let by_second = || second.map(|second| carrier.meets(second)).unwrap_or_default();
         let by_both = || second.map(|second| first.meets(second)).unwrap_or_default();
