@@ -70,6 +70,11 @@ impl Track {
         self.contour.compensation.is_some()
     }
 
+    /// What cutter compensation is on with.
+    pub fn side(&self) -> Option<CompensationSettings> {
+        self.contour.compensation.as_ref().map(|compensation| compensation.side)
+    }
+
     /// The direction of the last programmed move at its end, in the frame.
     pub fn last_direction(&self) -> Option<[f64; 3]> {
         self.contour.direction
@@ -98,12 +103,13 @@ impl Track {
             ));
         }
         self.settle()?;
-        self.contour.actual = Some(at);
+        let at = *self.contour.actual.get_or_insert(at);
         self.contour.compensation = Some(Compensation::new(side, plane, at));
         Ok(())
     }
 
-    /// Ends cutter compensation: the next move goes straight from where the tool is.
+    /// Ends cutter compensation: the next move goes straight from where the tool is. With `next`, it may not have to go
+    /// round the end of the contour.
     pub fn end_compensation(&mut self, next: Option<[f64; 3]>) -> Result<(), NcProblem> {
         self.settle()?;
         if let Some(compensation) = self.contour.compensation.take() {

@@ -19,7 +19,7 @@ pub use rapids::RapidPoint;
 pub(crate) use circular_arc::{Arc, CircularArc, radii_differ, radius_slack};
 pub(crate) use contour::free;
 pub(crate) use contour::{
-    ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, NARROW, ProgramPlace, Stroke,
+    ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, NARROW, ProgramPlace, Stroke, end_at_angle,
 };
 pub(crate) use cycles::{
     ArcSlot, ContourCycle, Course, Cycle, HoleCycle, HolePlace, HoleWork, Pecks, Pocket, Shape, WayOut, Work,

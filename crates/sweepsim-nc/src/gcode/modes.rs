@@ -76,6 +76,8 @@ pub(crate) struct Modes {
     /// Okuma's G71 Z, in mm: the level that takes the place of where a cycle began.
     pub return_level: Option<f64>,
     pub cycle: CycleWords,
+    /// D: the register of the cutter's diameter.
+    pub register: Option<f64>,
     /// G16, and its last radius and angle.
     pub polar: bool,
     pub polar_words: [Option<f64>; 2],

@@ -318,3 +318,22 @@ fn what_is_left_out_comes_back() {
     // Arcs of which only the end and the radius are said may lie on either side.
     assert!(alone.get() > 130, "{}", alone.get());
 }
+
+/// A vertical line touches a circle there: rounded to 0.001 mm, it may pass the circle by, or cross it farther away.
+#[test]
+fn an_arc_may_end_where_it_turns_back() {
+    let radius = 10.0 * 2.0_f64.sqrt();
+    for (centre, end) in [
+        ("CCX+14.142 CCY+0", "X+28.284 Y+0"),
+        ("CCX+14.143 CCY+0", "X+28.285 Y+0"),
+    ] {
+        let program = read(&format!("L X+4.142 Y+10 F100\nFC DR- {centre} {end}\nFL AN-90 LEN10\n"));
+        let found = ends(&program);
+        near(
+            &found,
+            &[[4.142, 10.0], [14.1421 + radius, 0.0], [14.1421 + radius, -10.0]],
+        );
+    }
+    let program = read("L X+0 Y-14.142 F100\nFC DR+ R14.142 CCX+0 CCY+0 X+14.142 Y+0\nFLT LEN5\n");
+    near(&ends(&program), &[[0.0, -14.142], [14.142, 0.0], [14.142, 5.0]]);
+}

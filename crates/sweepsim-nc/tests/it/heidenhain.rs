@@ -376,7 +376,7 @@ fn bad_programs_say_where_and_what() {
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nAPPR LT X+1",
-            "2:1: APPR before a block of this kind is not supported yet: expected L, C or CR with Cartesian coordinates after it",
+            "2:1: APPR before a block of this kind is not supported yet: expected L, LP, C, CP or CR after it",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nFL X+1",

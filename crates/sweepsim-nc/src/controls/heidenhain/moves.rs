@@ -7,6 +7,30 @@ use crate::machines::SHORTEST;
 use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
+/// The place that `PR` and `PA` give about a pole, from where the tool is: what is not given stays.
+pub(super) fn polar_point(
+    centre: Option<[f64; 2]>,
+    [radius, angle]: [Option<(f64, bool)>; 2],
+    now: Option<[f64; 2]>,
+) -> Result<[f64; 2], NcProblem> {
+    let Some(centre) = centre else {
+        return Err(NcProblem::syntax(
+            "polar coordinates without a pole: expected CC before them",
+        ));
+    };
+    let out = now.map(|now| [now[0] - centre[0], now[1] - centre[1]]);
+    let need =
+        || NcProblem::syntax("polar coordinates from an unknown position: expected a move to X, Y and Z before them");
+    let counted = |given: Option<(f64, bool)>, now: Option<f64>| match given {
+        Some((value, false)) => Ok(value),
+        Some((more, true)) => now.map(|now| now + more).ok_or_else(need),
+        None => now.ok_or_else(need),
+    };
+    let radius = counted(radius, out.map(|[x, y]| x.hypot(y)))?;
+    let angle = counted(angle, out.map(|[x, y]| y.atan2(x).to_degrees()))?.to_radians();
+    Ok([centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()])
+}
+
 impl Reader<'_> {
     pub(super) fn path(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
@@ -91,6 +115,7 @@ impl Reader<'_> {
         let Some(target) = self.target(&words, kind, line)? else {
             return if calls { self.call_cycle(line) } else { Ok(()) };
         };
+        self.modes.last_rapid = words.rapid;
         self.corner_ahead(words.rapid, abc)?;
         match kind {
             "L" | "LP" | "LN" => self.line_block(&words, target, abc, line)?,
@@ -172,32 +197,9 @@ impl Reader<'_> {
         }
         let mut xyz = self.track.xyz;
         if polar {
-            let Some(centre) = self.modes.centre else {
-                return Err(whole(NcProblem::syntax(
-                    "polar coordinates without a pole: expected CC before them",
-                )));
-            };
-            let now = match (xyz[u], xyz[v]) {
-                (Some(a), Some(b)) => Some([a - centre[0], b - centre[1]]),
-                _ => None,
-            };
-            let need = || {
-                whole(NcProblem::syntax(
-                    "polar coordinates from an unknown position: expected a move to X, Y and Z before them",
-                ))
-            };
-            let radius = match words.polar[0] {
-                Some((radius, false)) => radius,
-                Some((more, true)) => now.map(|now| now[0].hypot(now[1])).ok_or_else(need)? + more,
-                None => now.map(|now| now[0].hypot(now[1])).ok_or_else(need)?,
-            };
-            let angle = match words.polar[1] {
-                Some((angle, false)) => angle.to_radians(),
-                Some((more, true)) => now.map(|now| now[1].atan2(now[0])).ok_or_else(need)? + more.to_radians(),
-                None => now.map(|now| now[1].atan2(now[0])).ok_or_else(need)?,
-            };
-            xyz[u] = Some(centre[0] + radius * angle.cos());
-            xyz[v] = Some(centre[1] + radius * angle.sin());
+            let now = xyz[u].zip(xyz[v]).map(|(a, b)| [a, b]);
+            let at = polar_point(self.modes.centre, words.polar, now).map_err(whole)?;
+            (xyz[u], xyz[v]) = (Some(at[0]), Some(at[1]));
         }
         for k in 0..3 {
             if let Some((value, relative)) = words.axes[k] {

@@ -19,6 +19,8 @@ pub(super) struct Modes {
     pub shortest: bool,
     /// The centre of CC, in the frame.
     pub centre: Option<[f64; 2]>,
+    /// Whether the last move was a rapid.
+    pub last_rapid: bool,
     /// The side of the contour: RL.
     pub compensated: Option<bool>,
     /// The radii of TOOL DEF, in mm.

@@ -4,7 +4,7 @@ use super::interpreter::Reader;
 use super::language::expression::Value;
 use super::state::{Motion, PoleFrom};
 use super::words::{Action, Meaning, Words};
-use crate::drive::{CompensationSettings, Corner, CornerShape, Corners, DiameterAsked};
+use crate::drive::{CompensationSettings, Corner, CornerShape, Corners, DiameterAsked, end_at_angle};
 use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
@@ -37,7 +37,29 @@ impl Reader<'_> {
             round_ends: self.modes.round_ends,
             tangent: 1e-6,
         };
+        // Beside a contour the last move ends at right angles, and this one begins as if compensation had been off.
+        self.track.end_compensation(None).map_err(whole)?;
+        self.modes.compensated = Some(self.modes.compensation());
         self.track.compensate(side, self.modes.plane).map_err(whole)
+    }
+
+    /// Refuses to go on beside a contour in another way than it began.
+    pub(super) fn check_compensation(&self) -> Result<(), NcProblem> {
+        let Some(began) = self.modes.compensated.filter(|_| self.track.compensates()) else {
+            return Ok(());
+        };
+        let now = self.modes.compensation();
+        let what = match () {
+            () if now.plane != began.plane => "the plane",
+            () if now.edge != began.edge => "D",
+            () if now.allowance != began.allowance => "OFFN",
+            () if now != began => "G450, G451 or DISC",
+            () => return Ok(()),
+        };
+        Err(NcProblem::unsupported(
+            format!("a change of {what} while cutter compensation is on is"),
+            "expected G40 before it, or G41 or G42 again with it",
+        ))
     }
 
     /// The radius of the tool's edge, with its allowance. `unknown`: its diameter where nobody tells it, in mm.
@@ -96,8 +118,9 @@ impl Reader<'_> {
                 "FRC" => action.corner_feed = feed,
                 "FRCM" => self.modes.corner_feed = feed,
                 "DISC" => self.modes.distortion = word.value,
-                "ANG" if word.value != 0.0 => {
-                    let problem = NcProblem::unsupported("ANG is", "expected the contour by lines and arcs");
+                "ANG" if words.any(&["X", "Y", "Z"]).is_none() => {
+                    let problem =
+                        NcProblem::unsupported("ANG without an end is", "expected one coordinate of the plane with it");
                     return Err((problem, word.span.clone()));
                 }
                 _ => continue,
@@ -112,6 +135,33 @@ impl Reader<'_> {
                 action.corner = Some(made);
             }
         }
+        Ok(())
+    }
+
+    /// The coordinate of the plane that `ANG` leaves to the angle of the line.
+    pub(super) fn along_angle(&self, words: &Words, to: &mut [Option<f64>; 3]) -> Result<(), Located> {
+        let Some(word) = words.get("ANG") else { return Ok(()) };
+        let fail = |problem| Err((problem, word.span.clone()));
+        let [u, v, _] = self.modes.plane;
+        let given = [u, v].map(|k| words.get(["X", "Y", "Z"][k]).is_some());
+        if given[0] == given[1] || !matches!(self.modes.motion, Motion::Rapid | Motion::Feed) {
+            let problem =
+                "ANG beside both coordinates of the plane, or neither, or in an arc: expected a line and one of them";
+            return fail(NcProblem::syntax(problem));
+        }
+        let here = self.track.xyz;
+        let ([Some(a), Some(b)], [Some(x), Some(y)]) = ([u, v].map(|k| here[k]), [u, v].map(|k| to[k])) else {
+            return Ok(());
+        };
+        let end = end_at_angle([a, b], [x, y], given[0], word.value.to_radians());
+        let Some([a, b]) = end else {
+            return fail(NcProblem::value(
+                "ANG",
+                word.value,
+                "an angle at which the line gets there",
+            ));
+        };
+        (to[u], to[v]) = (Some(a), Some(b));
         Ok(())
     }
 

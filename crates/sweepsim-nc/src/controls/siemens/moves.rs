@@ -59,6 +59,11 @@ impl Reader<'_> {
             "X", "Y", "Z", "A", "B", "C", "A3", "B3", "C3", "I", "J", "K", "CR", "AR", "I1", "J1", "K1", "AP", "RP",
         ]) else {
             if action.side == Some(None) {
+                if self.modes.round_ends && self.track.compensates() {
+                    let problem =
+                        NcProblem::unsupported("KONT with G40 alone is", "expected G40 with its move, or NORM");
+                    return Err((problem, words.whole()));
+                }
                 self.track
                     .end_compensation(None)
                     .map_err(|problem| (problem, words.whole()))?;
@@ -115,8 +120,12 @@ impl Reader<'_> {
             return Ok(());
         };
         if action.side == Some(None) {
-            self.track.end_compensation(Some(target)).map_err(here)?;
+            let rounds = self.modes.round_ends;
+            self.track
+                .end_compensation(Some(target).filter(|_| rounds))
+                .map_err(here)?;
         }
+        self.check_compensation().map_err(here)?;
         self.corner_at_end(action);
         match (self.modes.motion, direction) {
             (Motion::Arc { .. } | Motion::Through | Motion::Tangential, None) => self.arc(words, target, abc)?,
@@ -237,6 +246,7 @@ impl Reader<'_> {
             self.track.xyz = xyz;
             return Ok(None);
         }
+        self.along_angle(words, &mut xyz)?;
         if let [Some(x), Some(y), Some(z)] = xyz {
             if self.track.known().is_none()
                 && matches!(

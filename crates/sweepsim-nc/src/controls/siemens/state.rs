@@ -53,6 +53,8 @@ pub(super) struct Modes {
     pub corners: Corners,
     /// `DISC`.
     pub distortion: f64,
+    /// What the contour has been compensated with since `G41` or `G42`.
+    pub compensated: Option<CompensatedWith>,
     /// `KONT`.
     pub round_ends: bool,
     /// The radius of `RNDM`, in mm, and the feed of `FRCM`.
@@ -68,6 +70,16 @@ pub(super) struct Modes {
     pub(super) tools: BTreeMap<String, u32>,
     /// Whether the program changes tools by M6: else T does.
     pub(super) changes_by_m6: bool,
+}
+
+/// What may not change beside a contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CompensatedWith {
+    pub(super) plane: [usize; 3],
+    pub(super) edge: u32,
+    pub(super) allowance: f64,
+    pub(super) corners: Corners,
+    pub(super) distortion: f64,
 }
 
 /// What `MCALL` calls.
@@ -102,6 +114,17 @@ impl Modes {
             tip_control: options.machine.tip_control,
             edge: 1,
             ..Self::default()
+        }
+    }
+
+    /// What contours are compensated with.
+    pub fn compensation(&self) -> CompensatedWith {
+        CompensatedWith {
+            plane: self.plane,
+            edge: self.edge,
+            allowance: self.allowance,
+            corners: self.corners,
+            distortion: self.distortion,
         }
     }
 

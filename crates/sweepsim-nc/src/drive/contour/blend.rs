@@ -6,6 +6,10 @@ use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, meetings, minu
 use super::stroke::{ArcPlane, Bend, ProgramPlace, Stroke};
 use crate::text::error::NcProblem;
 
+/// The sine of the turn, one degree, up to which a corner has no length (*Sinumerik ISO Milling*, Optional chamfering and
+/// corner rounding, as on Fanuc): moves that are meant to be tangential are that only up to rounded numbers.
+const TANGENTIAL: f64 = 0.017_452;
+
 /// What is made of a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CornerShape {
@@ -168,7 +172,8 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
     let [u, v, w] = plane;
     let refuse = |what: String, expected: &str| Err(NcProblem::unsupported(what, expected.to_owned()));
     let p = first.end;
-    if start[w] != p[w] || second.end[w] != p[w] {
+    let leaves = |stroke: &Stroke| stroke.bend.is_some() && stroke.plane != plane;
+    if start[w] != p[w] || second.end[w] != p[w] || leaves(first) || leaves(second) {
         if !corner.strict {
             return Ok(Outcome::OutOfPlane);
         }
@@ -177,7 +182,8 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
             "expected both moves in the plane",
         );
     }
-    if first.rapid || second.rapid {
+    // Siemens: "F, FRC and FRCM are not active when a chamfer is traversed with G0".
+    if corner.strict && (first.rapid || second.rapid) {
         return refuse(
             format!("{} at a rapid is", corner.word),
             "expected it between two feed moves",
@@ -195,7 +201,7 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
     }
     let (ta, tb) = (a.direction(a.end), b.direction(b.start));
     let turn = cross(ta, tb);
-    if turn.abs() <= 1e-12 && dot(ta, tb) > 0.0 {
+    if turn.abs() <= TANGENTIAL && dot(ta, tb) > 0.0 {
         return Ok(Outcome::InLine);
     }
     let too_large = |size: f64, takes: f64| {
@@ -280,6 +286,7 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
         between: Stroke {
             end: at(two),
             bend,
+            plane,
             place: corner.place,
             feed: corner.feed.or(second.feed),
             ..*second

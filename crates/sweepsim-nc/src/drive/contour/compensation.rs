@@ -88,7 +88,7 @@ impl Compensation {
 
     /// Checks that the tool gets to `target` from the end of the contour without going round it (Siemens's `KONT`).
     pub(crate) fn check_exit(&self, target: [f64; 3]) -> Result<(), NcProblem> {
-        if !self.side.round_ends || self.first || self.side.radius == 0.0 {
+        if self.first || self.side.radius == 0.0 {
             return Ok(());
         }
         let at = plus(
@@ -180,10 +180,7 @@ impl Compensation {
             let d = minus(q, p);
             let distance = length(d);
             if distance == 0.0 {
-                // Along the plane's axis only.
-                let mut end = stroke.end;
-                set(self.plane, &mut end, flat(self.plane, self.current));
-                self.wait(Stroke { end, ..stroke });
+                self.across(stroke, out);
                 return Ok(());
             }
             let t = [d[0] / distance, d[1] / distance];
@@ -265,6 +262,17 @@ impl Compensation {
         Ok(())
     }
 
+    /// A move along the plane's axis only: it waits with the move before it, if there is one.
+    fn across(&mut self, stroke: Stroke, out: &mut Vec<Item>) {
+        let mut end = stroke.end;
+        set(self.plane, &mut end, flat(self.plane, self.current));
+        self.wait(Stroke { end, ..stroke });
+        if self.first {
+            out.extend(self.waiting.drain(..));
+            self.start = end;
+        }
+    }
+
     /// The arc from `start`, uncompensated, that ends in `end` along `last`.
     fn lead_in(&self, start: Flat, end: Flat, last: Flat, counter_clockwise: bool) -> Result<Bend, NcProblem> {
         if self.side.beside_next {
@@ -315,10 +323,13 @@ impl Compensation {
     pub(super) fn flush_to(&mut self, at: Flat, extends: bool, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let plane = self.plane;
         let (start, direction) = (flat(plane, self.start), self.tangent);
+        // Those after the first are across the plane.
+        let mut is_first = true;
         for item in &mut self.waiting {
             let Item::Stroke(stroke) = item else { continue };
+            let checks = std::mem::take(&mut is_first) && !self.entry;
             let too_far = match &mut stroke.bend {
-                None if self.entry => false,
+                None if !checks => false,
                 None => dot(direction, minus(at, start)) < -1e-9,
                 Some(bend) => {
                     let (a, b) = (minus(start, bend.centre), minus(at, bend.centre));
@@ -326,7 +337,9 @@ impl Compensation {
                     // The turn that differs least from the programmed one.
                     let sweep = angle + TAU * ((bend.sweep - angle) / TAU).round();
                     let reversed = sweep * bend.sweep < 0.0 && sweep.abs() * length(b) > 1e-6;
-                    let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > 0.0254;
+                    // Corners that count as none leave a gap of so much.
+                    let gap = self.side.tangent * self.side.radius;
+                    let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > gap.max(0.0254);
                     bend.sweep = sweep;
                     reversed || longer && !extends && !self.extended
                 }

@@ -112,6 +112,17 @@ pub(crate) fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
     }
 }
 
+/// The end of a line at an angle (in radians) of which one coordinate is given, the first or the second; `None` if the
+/// line never has it.
+pub(crate) fn end_at_angle(start: Flat, [x, y]: Flat, first_is_given: bool, angle: f64) -> Option<Flat> {
+    let (sin, cos) = angle.sin_cos();
+    let (goes, way) = match first_is_given {
+        true => (cos, x - start[0]),
+        false => (sin, y - start[1]),
+    };
+    (goes.abs() > 1e-9).then(|| plus(start, way / goes, [cos, sin]))
+}
+
 /// The direction of an arc about `centre` at `at`.
 pub(crate) fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Flat {
     let [x, y] = minus(at, centre);
@@ -124,15 +135,24 @@ pub(crate) fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Fl
 }
 
 /// Where the tool leaves the first curve for the second one, at an inside corner near `corner`. `end` is where the first one would end,
-/// `start` where the second one would start. `None` if they do not meet.
+/// `start` where the second one would start. `None` if they do not meet so that both become shorter.
 pub(crate) fn inside_corner(first: &Curve, end: Flat, second: &Curve, start: Flat, corner: Flat) -> Option<Flat> {
     let slack = 1e-9;
     let near = |point: &Flat| length(minus(*point, corner));
     let points = meetings(first, second);
-    // Both curves are shortened there, if possible; of two such places the nearer one.
-    let shortens = |point: &&Flat| first.behind(end, **point) >= -slack && second.behind(start, **point) <= slack;
-    let best = |points: &mut dyn Iterator<Item = &Flat>| points.min_by(|a, b| near(a).total_cmp(&near(b))).copied();
-    best(&mut points.iter().filter(shortens)).or_else(|| best(&mut points.iter()))
+    let shortens = |point: &Flat| first.behind(end, *point) >= -slack && second.behind(start, *point) <= slack;
+    points
+        .into_iter()
+        .filter(shortens)
+        .min_by(|a, b| near(a).total_cmp(&near(b)))
+}
+
+/// Of the points where two curves meet, the one nearest to `corner`.
+pub(crate) fn nearest_meeting(first: &Curve, second: &Curve, corner: Flat) -> Option<Flat> {
+    let near = |point: &Flat| length(minus(*point, corner));
+    meetings(first, second)
+        .into_iter()
+        .min_by(|a, b| near(a).total_cmp(&near(b)))
 }
 
 /// Where the tool leaves the first curve for the second one, at an outside corner near `corner`, if both are extended.

@@ -3,12 +3,15 @@
 use std::f64::consts::{PI, TAU};
 
 use super::compensation::Compensation;
-use super::corner::{Curve, Flat, cross, dot, inside_corner, length, minus, outside_corner, plus};
+use super::corner::{Curve, Flat, cross, dot, inside_corner, length, minus, nearest_meeting, outside_corner, plus};
 use super::stroke::{Bend, Corners, Item, Stroke, flat, set};
 use crate::text::error::NcProblem;
 
 /// The largest turn at which the tool goes to the meeting of the offsets: Siemens's usual machine data.
 const LARGEST_MEETING: f64 = 100.0 / 180.0 * PI + 1e-9;
+
+/// Moves that turn by less, in radians, are meant to be tangential: rounded numbers make their offsets miss each other.
+const SMALL: f64 = 0.05;
 
 impl Compensation {
     /// Joins the waiting move with the next one, whose offset starts in `start` along `t`, on `curve`; the corner is at `p`.
@@ -47,21 +50,27 @@ impl Compensation {
             let turn = if angle < 0.0 { -angle } else { TAU - angle };
             if self.side.corners == Corners::Meetings && turn <= LARGEST_MEETING {
                 let end = flat(self.plane, self.current);
-                return match outside_corner(&self.curve, end, curve, start, p) {
-                    Some(at) => self.flush_to(at, true, out),
-                    None => Err(NcProblem::syntax(
-                        "the offsets of both moves do not meet outside of this corner: expected G450",
-                    )),
-                };
+                match outside_corner(&self.curve, end, curve, start, p) {
+                    Some(at) => return self.flush_to(at, true, out),
+                    // On an arc.
+                    None if turn < SMALL => {}
+                    None => {
+                        return Err(NcProblem::syntax(
+                            "the offsets of both moves do not meet outside of this corner: expected G450",
+                        ));
+                    }
+                }
             }
             self.flush(out)?;
             self.outside(p, start, t, turn, stroke, out);
             return Ok(());
         }
         let end = flat(self.plane, self.current);
-        match inside_corner(&self.curve, end, curve, start, p) {
+        let is_small = angle < SMALL && length(minus(end, start)) < SMALL * self.side.radius;
+        let shortened = inside_corner(&self.curve, end, curve, start, p);
+        match shortened.or_else(|| nearest_meeting(&self.curve, curve, p).filter(|_| !is_small)) {
             Some(at) => self.flush_to(at, false, out),
-            None if angle < 0.05 && length(minus(end, start)) < 0.05 * self.side.radius => self.flush(out),
+            None if is_small => self.flush(out),
             None => Err(NcProblem::syntax(format!(
                 "the tool of radius {} mm does not fit into this inside corner",
                 self.side.radius
@@ -77,7 +86,12 @@ impl Compensation {
             let mut end = this.current;
             set(plane, &mut end, at);
             this.current = end;
-            out.push(Item::Stroke(Stroke { end, bend, ..*stroke }));
+            out.push(Item::Stroke(Stroke {
+                end,
+                bend,
+                plane,
+                ..*stroke
+            }));
         };
         if self.side.corners != Corners::Lines {
             let sweep = if self.side.left { -turn } else { turn };

@@ -12,6 +12,7 @@ mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
 pub(crate) use compensation::{Compensation, NARROW};
+pub(crate) use corner::end_at_angle;
 pub(crate) use queue::Contour;
 pub(crate) use recording::{Before, Recording};
 pub(crate) use stroke::{ArcPlane, Bend, CompensationSettings, Corners, Item, ProgramPlace, Stroke};

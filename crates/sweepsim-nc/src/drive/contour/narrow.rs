@@ -1,7 +1,9 @@
-//! Slots that several moves make narrower than the tool: corners compare neighbouring moves only, as controls without a check do.
+//! Slots that several moves make narrower than the tool: corners compare neighbouring moves only, as controls without a
+//! check do.
 //!
-//! The tool's moves so far are compared with the moves of the contour that are not their neighbours, those of the look-ahead before and after. The move that
-//! switches compensation on is none of the contour.
+//! The tool's moves so far are compared with all other moves of the contour, those of the look-ahead before and after. The
+//! move that switches compensation on is none of the contour. Nor is an arc that is its first move or its last: on such arcs the
+//! tool comes to the contour and leaves it.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
@@ -29,6 +31,8 @@ struct Element {
 pub(super) struct Narrow {
     contour: VecDeque<Element>,
     tool: VecDeque<Element>,
+    /// An arc that may be the last move.
+    waiting: Option<Element>,
     /// The number of moves of the contour so far.
     count: usize,
     /// One report a contour is enough.
@@ -51,13 +55,26 @@ impl Narrow {
         if self.reported || index == 0 {
             return None;
         }
+        let before = self.waiting.take().and_then(|arc| self.wall(arc, radius));
+        let found = match element.bend {
+            None => self.wall(element, radius),
+            Some(_) => {
+                self.waiting = Some(element).filter(|_| index > 1);
+                None
+            }
+        };
+        self.report(before.or(found))
+    }
+
+    /// A move that is no way to the contour or from it.
+    fn wall(&mut self, element: Element, radius: f64) -> Option<TooNarrow> {
         let found = self
             .tool
             .iter()
-            .filter(|tool| tool.index + 2 <= index)
+            .filter(|tool| tool.index < element.index)
             .find_map(|tool| clash(tool, &element, radius));
         keep(&mut self.contour, element);
-        self.report(found)
+        found
     }
 
     /// The next move of the tool.
@@ -78,7 +95,7 @@ impl Narrow {
         let found = self
             .contour
             .iter()
-            .filter(|other| other.index.abs_diff(index) >= 2)
+            .filter(|other| other.index != index)
             .find_map(|other| clash(&element, other, radius));
         keep(&mut self.tool, element);
         self.report(found)

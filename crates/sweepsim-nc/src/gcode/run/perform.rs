@@ -46,6 +46,8 @@ impl Reader {
         }
         self.check_plane_blocks(block)
             .map_err(|problem| (problem, block.all()))?;
+        self.keep_register(block)
+            .map_err(|problem| (problem, block.span('D')))?;
         let fixture = self.fixture_offset(block);
         let plan = self.modal(block)?;
         if let Some(offset) = fixture {
@@ -138,6 +140,10 @@ impl Reader {
             _ => "XYZABCIJKR",
         };
         let used = block.first(letters);
+        if let Some(word) = block.after_comma() {
+            self.check_after_comma(word, used.is_some())
+                .map_err(|problem| (problem, word.span()))?;
+        }
         match (used, self.modes.motion) {
             (None, Some(MotionMode::Arc { .. })) if plan.motion.is_some() => Err(whole(NcProblem::syntax(
                 "an arc without an end or a centre: expected X, Y, Z, I, J, K or R",

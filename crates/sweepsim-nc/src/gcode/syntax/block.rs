@@ -53,6 +53,10 @@ pub(crate) struct Block {
     first: [u8; 26],
     /// The second word of a letter other than G and M, with another value.
     pub twice: Option<Word>,
+    /// `,R` or `,C`: a corner at the end of the move.
+    pub corner: Option<Word>,
+    /// `,A`: the angle of the line.
+    pub angle: Option<Word>,
     /// The values of the words of variables that have none: Fanuc ignores such words.
     pub assignments: Vec<(Target, Option<f64>)>,
     /// Began with `/`.
@@ -71,6 +75,7 @@ impl Block {
         self.words.clear();
         self.first = [0; 26];
         self.twice = None;
+        (self.corner, self.angle) = (None, None);
         self.assignments.clear();
         self.optional = false;
         self.tape = false;
@@ -100,7 +105,7 @@ impl Block {
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.words.is_empty()
+        self.words.is_empty() && self.after_comma().is_none()
     }
 
     pub(crate) fn word(&self, letter: char) -> Option<&Word> {
@@ -120,6 +125,11 @@ impl Block {
 
     pub(crate) fn span(&self, letter: char) -> Range<usize> {
         self.word(letter).map_or_else(|| self.all(), Word::span)
+    }
+
+    /// A word that begins with a comma.
+    pub(crate) fn after_comma(&self) -> Option<&Word> {
+        self.corner.as_ref().or(self.angle.as_ref())
     }
 
     /// The first word with one of these letters.

@@ -48,6 +48,7 @@ pub(crate) fn read_from(cursor: Cursor, variables: &dyn Variables, block: &mut B
                 }
             }
             b'#' => assignment(&mut values, block)?,
+            b',' => after_comma(&mut values, block)?,
             b':' if block.is_empty() => {
                 values.cursor.at += 1;
                 let Some(digits) = values.cursor.digits() else {
@@ -101,6 +102,27 @@ pub(crate) fn plain(line: &str) -> Result<Block, Located> {
     let mut block = Block::default();
     read(line, &NoVariables, &mut block)?;
     Ok(block)
+}
+
+/// `,R5` and `,C2`, a corner at the end of the move, and `,A45`, the angle of its line.
+fn after_comma(values: &mut Values, block: &mut Block) -> Result<(), Located> {
+    let start = values.cursor.at;
+    let unexpected = values.cursor.unexpected("a letter with a number");
+    values.cursor.at += 1;
+    let letter = values.cursor.peek().map(|byte| byte.to_ascii_uppercase());
+    let place = match letter {
+        Some(b'R' | b'C') => &mut block.corner,
+        Some(b'A') => &mut block.angle,
+        _ => return Err(unexpected),
+    };
+    values.cursor.at += 1;
+    if place.is_some() || !values.follows() {
+        return Err(unexpected);
+    }
+    let (value, _) = values.value()?;
+    let letter = letter.map_or(',', char::from);
+    *place = value.map(|value| Word::new(letter, value, start..values.cursor.at));
+    Ok(())
 }
 
 /// `#1 = 5`

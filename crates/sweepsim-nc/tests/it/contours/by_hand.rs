@@ -74,6 +74,32 @@ fn a_square_by_hand() {
     );
 }
 
+/// *Sinumerik 808D*, Special cases of the tool radius compensation: the last move ends at right angles to it, the block with
+/// the code begins anew.
+#[test]
+fn the_side_changes_on_siemens_as_if_compensation_began_anew() {
+    let text = |code: &str| format!("T1 D1 F100\nG0 X-10 Y0 Z0\nG1 G41 X0\nX10\n{code} X20\nX30\nG40 X40\n");
+    let ends = |code: &str| tips(&read(&text(code), false, &options(2.0)));
+    let expected = |side: f64| {
+        [
+            [-10.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [10.0, 1.0, 0.0],
+            [20.0, side, 0.0],
+            [30.0, side, 0.0],
+            [40.0, 0.0, 0.0],
+        ]
+    };
+    assert_near(&ends("G42"), &expected(-1.0));
+    assert_near(&ends("G41"), &expected(1.0));
+    // Even into an inside corner.
+    let inside = "T1 D1 F100\nG0 X-10 Y0 Z0\nG1 G41 X0\nX10\nG41 Y10\nY20\nG40 Y30\n";
+    assert_near(
+        &tips(&read(inside, false, &options(2.0)))[2..5],
+        &[[10.0, 1.0, 0.0], [9.0, 10.0, 0.0], [9.0, 20.0, 0.0]],
+    );
+}
+
 #[test]
 fn oversizes_of_heidenhain() {
     let text = |call: &str| {
@@ -140,6 +166,25 @@ fn corners_that_meet_on_arcs() {
     let found = read(text, false, &options(2.0));
     let _ = samples(&found, 0..found.poses.len());
     assert_near(&tips(&found)[2..4], &[[3.0 - 3_f64.sqrt(), -1.0, 0.0], [3.0, 2.0, 0.0]]);
+}
+
+/// Numbers are rounded to 0.001 mm: lines and arcs that are meant to be tangential are not, and their offsets miss each
+/// other.
+#[test]
+fn tangential_moves_of_rounded_numbers() {
+    for (corner, contour) in [
+        ("G451", "G1 X3.696 Y18.881\nG2 X13.713 Y26.484 I9.271 J-1.815\nG1 X23\n"),
+        (
+            "G450",
+            "G1 X1.855 Y-3.448\nG3 X7.541 Y-2.718 I2.703 J1.454\nG3 X6.160 Y-2.731 I-0.684 J-0.697\n",
+        ),
+    ] {
+        for side in ["G41", "G42"] {
+            let text = format!("T1 D1 F100 {corner}\nG0 X-2 Y-10 Z0\nG1 {side} X0 Y0\n{contour}G1 G40 X0 Y60\n");
+            let program = read(&text, false, &options(0.5));
+            assert!(program.notes.is_empty(), "{text}{:?}", program.notes);
+        }
+    }
 }
 
 #[test]
@@ -211,10 +256,55 @@ fn corner_words() {
             [10.0, 20.0, 0.0],
         ],
     );
+    // Where numbers are rounded, a line may go on at an angle of almost nothing: no corner.
+    for turned in ["X20 Y0.00000001", "X20 Y0.000001", "X20 Y-0.000002"] {
+        assert_eq!(go(&format!("RND=2\n{turned} RNDM=5")).len(), 5, "{turned}");
+    }
+    // A line and an arc that are tangential but for rounding, as RNDM finds them.
+    let tangential = "F9 G0 X0 Y0 Z0\nG1 RNDM=2.178 X-2.157 Y1.669\nG2 X-4.257 Y4.751 I3.693 J4.773\n";
+    assert_eq!(tips(&read(tangential, false, &exact)).len(), 3);
+    // Before a rapid, too: the rounding is no rapid.
+    let before_rapid = read("F9 G0 X0 Y0 Z0\nG1 RNDM=2 X10\nG0 Y10\nZ5\n", false, &exact);
+    assert_near(
+        &tips(&before_rapid),
+        &[
+            [0.0; 3],
+            [8.0, 0.0, 0.0],
+            [10.0, 2.0, 0.0],
+            [10.0, 10.0, 0.0],
+            [10.0, 10.0, 5.0],
+        ],
+    );
+    let rapids: Vec<bool> = before_rapid.poses.iter().map(|pose| pose.rapid).collect();
+    assert_eq!(rapids, [true, false, false, true, true]);
     // The rounding of Klartext has the line of its block, and its feed.
     let klartext = read("L X+0 Y+0 Z+0 FMAX\nL X+10 F9\nRND R2 F4\nL Y+10\n", true, &exact);
     let lines: Vec<(usize, Option<f64>)> = klartext.poses.iter().map(|pose| (pose.line, pose.feed)).collect();
     assert_eq!(lines, [(1, None), (2, Some(9.0)), (3, Some(4.0)), (4, Some(9.0))]);
+}
+
+#[test]
+fn lines_by_their_angle() {
+    let text = "F100 G0 X0 Y0 Z0\nG1 ANG=45 X10\nG91 Y10 ANG=120 RND=1\nG90 X20 ANG=0\nG18 Z10 ANG=30\nG0 ANG=90 X0\n";
+    let found = tips(&read(text, false, &options(2.0)));
+    let x = 10.0 - 10.0 / 3.0_f64.sqrt();
+    let up = 20.0 + 10.0 * 30.0_f64.to_radians().tan();
+    assert_near(&found[1..2], &[[10.0, 10.0, 0.0]]);
+    assert_near(&found[4..], &[[20.0, 20.0, 0.0], [up, 20.0, 10.0], [0.0, 20.0, 10.0]]);
+    let length = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    // Rounded at (x, 20), where the lines meet at 60 degrees.
+    let cut = 3.0_f64.sqrt();
+    assert!((length(found[2], [x, 20.0, 0.0]) - cut).abs() < 1e-9 && (found[3][0] - x - cut).abs() < 1e-9);
+    for (block, expected) in [
+        ("G1 ANG=30", "ANG without an end"),
+        ("G1 X5 Y5 ANG=30", "ANG beside both"),
+        ("G1 X5 ANG=90", "ANG is 90"),
+        ("G2 X5 ANG=30 CR=9", "ANG beside both"),
+    ] {
+        let error = sweepsim_nc::siemens::read(&format!("F100 G0 X0 Y0 Z0\n{block}\n"), &options(2.0));
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
 }
 
 #[test]

@@ -43,9 +43,26 @@ fn what_cannot_be_compensated_is_an_error() {
             "5:7: a tool change while cutter compensation is on",
         ),
         (
-            "G1 G41 X5\nX9\nG42 Y20\n",
-            "5:1: a change of cutter compensation without its end",
+            "$TC_DP6[1,2]=3\nG1 G41 X5\nX9\nD2 Y20\n",
+            "6:4: a change of D while cutter compensation is on",
         ),
+        (
+            "G1 G41 X5\nX9\nOFFN=1 Y20\n",
+            "5:8: a change of OFFN while cutter compensation is on",
+        ),
+        (
+            "G1 G41 X5\nX9\nG451 Y20\n",
+            "5:6: a change of G450, G451 or DISC while cutter compensation is on",
+        ),
+        (
+            "G1 G41 X5\nX9\nG18 X20\n",
+            "5:5: a change of the plane while cutter compensation is on",
+        ),
+        (
+            "G1 G41 X5\nY20\nKONT G40 X20 Y5\n",
+            "5:10: KONT from or to a point behind the contour",
+        ),
+        ("G1 G41 X5\nY20\nKONT G40\nX20 Y5\n", "5:6: KONT with G40 alone is"),
         (
             "G1 G41 X5\nX9\nSUPA G0 Z9\n",
             "5:9: a move that only the machine knows while cutter compensation is on",
@@ -70,7 +87,6 @@ fn what_cannot_be_compensated_is_an_error() {
             "G1 X10 CHF=1\nG2 X20 Y10 CR=10\n",
             "4:4: CHF at an arc is not supported yet",
         ),
-        ("G1 X10 RND=1\nG0 Y10\n", "4:4: RND at a rapid is not supported yet"),
         ("G1 X10 RND=-1\nY10\n", "3:8: RND is -1, but must be 0 or positive"),
         ("G1 AP=30\n", "3:4: polar coordinates without AP and RP"),
         ("G1 AP=30 RP=4 X5\n", "3:15: X beside polar coordinates"),

@@ -1,5 +1,6 @@
 //! Cutter compensation, rounded corners and chamfers on Siemens's and Heidenhain's controls, against offsets computed independently.
 
+mod across;
 mod by_hand;
 mod errors;
 mod narrow;

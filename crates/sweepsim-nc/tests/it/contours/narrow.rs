@@ -84,3 +84,21 @@ fn the_lines_of_a_narrow_slot() {
         assert!(found.iter().any(|note| note.ends_with(expected)), "{found:?}");
     }
 }
+
+/// On arcs from outside and back out again, which cross the tool's way along the first and the last move.
+#[test]
+fn arcs_to_a_contour_and_from_it_are_no_walls() {
+    let text = "G20 G90 G17 G0 X0. Y1.25 Z-0.3\nG1 G41 D2 X-0.5 F50.\nG3 X0. Y0.75 R0.5\nG1 X1.94\nG2 X2. Y0.69 R0.06\nG1 Y-0.69\n\
+        G2 X1.94 Y-0.75 R0.06\nG1 X-1.94\nG2 X-2. Y-0.69 R0.06\nG1 Y0.69\nG2 X-1.94 Y0.75 R0.06\nG1 X0.\nG3 X0.5 Y1.25 R0.5\n\
+        G1 G40 X0.\n";
+    for controller in [Controller::LinuxCnc, Controller::Haas] {
+        let mut options = ReadOptions::default();
+        options.controller = Some(controller);
+        options.diameters.insert(2, 0.375 * 25.4);
+        let notes = gcode::read(text, &options).unwrap().notes;
+        assert!(
+            notes.iter().all(|note| !note.message.contains("does not fit")),
+            "{notes:?}"
+        );
+    }
+}

@@ -180,3 +180,49 @@ fn heights_and_planes() {
     let other = program("G0 X-10 Y0 Z0\nG42.1 D-2\nG1 X0 Y0 F100\nX10\nG40\nG1 X0 Y20\n");
     assert_near(&tips(&other)[1..3], &[[0.0, 1.0, 0.0], [10.0, 1.0, 0.0]]);
 }
+
+/// Fanuc's D stays; on LinuxCNC, G41 without D is about the tool in the spindle.
+#[test]
+fn the_register_stays_until_another_one() {
+    let ends = |text: &str, controller: Controller| {
+        let mut given = options(controller);
+        given.diameters.extend([(3, 10.0), (21, 4.0)]);
+        let text = format!("T3 M6\nG21 G90 G0 X0. Y-20. Z5.\n{text}");
+        gcode::read(&text, &given).map(|program| tips(&program))
+    };
+    let before = "G43 H3 D21\nG41 G1 X0. Y0. F100\nY20.\nG40 X20.\n";
+    assert_near(
+        &ends(before, Controller::Fanuc).unwrap()[1..3],
+        &[[-2.0, 0.0, 5.0], [-2.0, 20.0, 5.0]],
+    );
+    let twice = "G41 D21 G1 X0. Y0. F100\nY20.\nG40 X20.\nG41 X30. Y20.\nY40.\nG40 X40.\n";
+    assert_near(
+        &ends(twice, Controller::Haas).unwrap()[4..6],
+        &[[28.0, 20.0, 5.0], [28.0, 40.0, 5.0]],
+    );
+    assert_near(
+        &ends(twice, Controller::LinuxCnc).unwrap()[4..6],
+        &[[25.0, 25.0, 5.0], [25.0, 40.0, 5.0]],
+    );
+    // Another radius beside the contour.
+    let change = "G41 D21 G1 X0. Y0. F100\nY20. D3\nX20.\nG40 X30.\n";
+    let error = ends(change, Controller::Fanuc).unwrap_err().to_string();
+    assert!(
+        error.contains("a change of the radius while cutter compensation is on"),
+        "{error}"
+    );
+    assert!(ends(&change.replace("D3", "D21"), Controller::Fanuc).is_ok());
+}
+
+/// LinuxCNC takes corners of up to 0.05 radians for none: the offsets may have a gap there.
+#[test]
+fn a_small_corner_before_an_arc_is_none_on_linuxcnc() {
+    let text = "G21 G90 G0 X-20 Y0 Z0\nG42.1 D5\nG1 X-10 F100\nX0\nG2 X1.396 Y-39.976 I0.698 J-19.988\nG40\nG1 X-20\n";
+    let mut options = options(Controller::LinuxCnc);
+    options.exact_arcs = true;
+    let found = tips(&gcode::read(text, &options).unwrap());
+    assert_near(&found[2..3], &[[0.0, -2.5, 0.0]]);
+    // The arc ends beside its own end.
+    let [x, y, _] = found[3];
+    assert!(((x - 0.698).hypot(y + 19.988) - 17.5).abs() < 2e-3, "{found:?}");
+}

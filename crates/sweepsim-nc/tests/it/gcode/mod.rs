@@ -1,6 +1,7 @@
 //! G-code: expressions, flow, cycles, cutter compensation, offsets, errors.
 
 mod compensation;
+mod corners;
 mod curves;
 mod cycles;
 mod errors;

@@ -1,15 +1,20 @@
-//! Approach to a contour and departure from it: `APPR LT LN CT LCT`, `DEP LT LN CT LCT`.
+//! Approach to a contour and departure from it: `APPR LT LN CT LCT`, `DEP LT LN CT LCT`; with a `P` before, the point is
+//! in polar coordinates.
 //!
-//! Source: *TNC 620, Klartext programming*, Contour approach and departure. The tool goes from where it is to an auxiliary point beside which the contour's compensation begins, and from there tangentially, or at a
-//! right angle (`LN`), to the first point of the contour; the departure is the same backwards.
+//! Source: *TNC 620, Klartext programming*, Contour approach and departure; *iTNC 530* (340 420), 6.3, for `R0`. The tool
+//! goes from where it is to an auxiliary point beside which the contour's compensation begins, and from there
+//! tangentially, or at a right angle (`LN`), to the first point of the contour; the departure is the same backwards.
 
 use std::f64::consts::TAU;
 
 use crate::controls::heidenhain::contours::free::is_free;
 use crate::controls::heidenhain::interpreter::Reader;
 use crate::controls::heidenhain::language::line::Line;
+use crate::controls::heidenhain::moves::polar_point;
 use crate::controls::heidenhain::words::MoveWords;
 use crate::drive::CircularArc;
+use crate::model::program::FeedMode;
+use crate::text::assumption::Assumption;
 use crate::text::error::{Located, NcProblem};
 
 type Flat = [f64; 2];
@@ -46,12 +51,21 @@ fn touch(from: Flat, centre: Flat, radius: f64, counter_clockwise: bool) -> Opti
     Some(turned(centre, plus(centre, radius / far, out), angle))
 }
 
+/// How the tool moves.
+struct Speed {
+    feed: Option<f64>,
+    mode: FeedMode,
+    rapid: bool,
+}
+
 impl Reader<'_> {
     /// `APPR` and `DEP`.
     pub(in crate::controls::heidenhain) fn approach_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         let (comes, kind) = (line.word(0) == "APPR", line.word(1).to_owned());
-        if !matches!(kind.as_str(), "LT" | "LN" | "CT" | "LCT") {
+        let plain = kind.strip_prefix('P').filter(|plain| comes || *plain == "LCT");
+        let plain = plain.unwrap_or(&kind);
+        if !matches!(plain, "LT" | "LN" | "CT" | "LCT") {
             let problem = NcProblem::unsupported(
                 format!("{} {kind} is", line.word(0)),
                 "expected LT, LN, CT or LCT, or the moves written out",
@@ -60,14 +74,20 @@ impl Reader<'_> {
         }
         let mut rest = line.clone();
         rest.tokens.remove(1);
+        let before = Speed {
+            feed: self.track.feed,
+            mode: self.track.feed_mode,
+            rapid: self.modes.last_rapid,
+        };
         let words = self.words(&rest)?;
         self.codes(line)?;
+        self.modes.last_rapid = words.rapid;
         if self.track.known().is_none() && self.uncertain {
             return Ok(());
         }
         match comes {
-            true => self.approach(&kind, &words, line),
-            false => self.depart(&kind, &words).map_err(whole),
+            true => self.approach(plain, &words, &before, line),
+            false => self.depart(plain, &words).map_err(whole),
         }
     }
 
@@ -82,24 +102,53 @@ impl Reader<'_> {
             Some((value, false)) => value,
             None => here[k],
         };
-        Ok(([at(plane[0]), at(plane[1])], at(plane[2])))
+        let [u, v, w] = plane;
+        let point = match words.polar.iter().any(Option::is_some) {
+            true => polar_point(self.modes.centre, words.polar, Some([here[u], here[v]]))?,
+            false => [at(u), at(v)],
+        };
+        Ok((point, at(w)))
     }
 
-    fn approach(&mut self, kind: &str, words: &MoveWords, line: &Line) -> Result<(), Located> {
+    /// Whether the tool is on the left of the contour. Without compensation nothing says it.
+    fn is_left(&mut self, kind: &str, side: Option<bool>) -> bool {
+        if side.is_none() && kind != "LT" {
+            let what = "from which side APPR and DEP come and go without RL or RR";
+            let taken = "from the right, as on the iTNC 530; later controls refuse some of them";
+            self.track.assume(Assumption::new(what, taken, "RL or RR in APPR"));
+        }
+        side == Some(true)
+    }
+
+    /// To the auxiliary point: as the move before, but with `LCT` as the block says.
+    fn go_to_auxiliary(&mut self, at: [f64; 3], kind: &str, before: &Speed, rapid: bool) -> Result<(), NcProblem> {
+        let abc = self.track.abc;
+        let said = before.rapid || before.feed.is_some();
+        if kind == "LCT" || rapid || !said {
+            return self.track.line(at, abc, rapid);
+        }
+        let own = (self.track.feed, self.track.feed_mode);
+        (self.track.feed, self.track.feed_mode) = (before.feed, before.mode);
+        let went = self.track.line(at, abc, before.rapid);
+        (self.track.feed, self.track.feed_mode) = own;
+        went
+    }
+
+    fn approach(&mut self, kind: &str, words: &MoveWords, before: &Speed, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
         let [u, v, w] = self.modes.plane;
         let (first, depth) = self.point_of(words).map_err(whole)?;
         let way = self.way_after(first).ok_or_else(|| {
             whole(NcProblem::unsupported(
                 "APPR before a block of this kind is",
-                "expected L, C or CR with Cartesian coordinates after it",
+                "expected L, LP, C, CP or CR after it",
             ))
         })?;
         let side = words
             .side
             .flatten()
             .or(self.modes.compensated.filter(|_| words.side.is_none()));
-        let towards_left = side.unwrap_or(words.counter_clockwise.unwrap_or(true));
+        let towards_left = self.is_left(kind, side);
         let normal = if towards_left { left(way) } else { left(way).map(|c| -c) };
         let radius = words.radius.unwrap_or(0.0);
         let sense = if towards_left == (radius >= 0.0) { 1.0 } else { -1.0 };
@@ -138,13 +187,15 @@ impl Reader<'_> {
         };
         // At a right angle, compensation begins at the auxiliary point; else before it, so that the tool comes there beside it, and goes down there.
         if kind == "LN" {
-            self.track.line(space(auxiliary, height), abc, rapid).map_err(whole)?;
+            self.go_to_auxiliary(space(auxiliary, height), kind, before, rapid)
+                .map_err(whole)?;
             self.track.line(space(auxiliary, depth), abc, rapid).map_err(whole)?;
             compensates(self).map_err(whole)?;
             return self.track.line(space(first, depth), abc, false).map_err(whole);
         }
         compensates(self).map_err(whole)?;
-        self.track.line(space(auxiliary, height), abc, rapid).map_err(whole)?;
+        self.go_to_auxiliary(space(auxiliary, height), kind, before, rapid)
+            .map_err(whole)?;
         if height != depth {
             self.track.line(space(auxiliary, depth), abc, rapid).map_err(whole)?;
         }
@@ -163,7 +214,7 @@ impl Reader<'_> {
         let way = self.track.last_direction().and_then(|way| unit([way[u], way[v]]));
         let way = way.ok_or_else(unknown)?;
         let side = self.modes.compensated.filter(|_| self.track.compensates());
-        let towards_left = side.unwrap_or(words.counter_clockwise.unwrap_or(true));
+        let towards_left = self.is_left(kind, side);
         let normal = if towards_left { left(way) } else { left(way).map(|c| -c) };
         let radius = words.radius.unwrap_or(0.0);
         let sense = if towards_left == (radius >= 0.0) { 1.0 } else { -1.0 };
@@ -246,7 +297,7 @@ impl Reader<'_> {
             let words = match line.word(0) {
                 "RND" | "CHF" | "FPOL" => continue,
                 word if is_free(word) => return self.free_way_after(&line, from),
-                "L" | "C" | "CR" | "CC" => self.words(&line).ok()?,
+                "L" | "LP" | "C" | "CP" | "CR" | "CC" => self.words(&line).ok()?,
                 _ => return None,
             };
             (self.track.feed, self.track.feed_mode, self.modes.centre) = before;
@@ -256,7 +307,10 @@ impl Reader<'_> {
                 Some((value, false)) => value,
                 None => from,
             };
-            let to = [at(u, from[0]), at(v, from[1])];
+            let to = match words.polar.iter().any(Option::is_some) {
+                true => polar_point(centre, words.polar, Some(from)).ok()?,
+                false => [at(u, from[0]), at(v, from[1])],
+            };
             let counter_clockwise = words.counter_clockwise.unwrap_or(true);
             let along = |centre: Flat| {
                 let out = unit([from[0] - centre[0], from[1] - centre[1]])?;
@@ -271,7 +325,7 @@ impl Reader<'_> {
                     centre = Some(to);
                     continue;
                 }
-                "C" => along(centre?),
+                "C" | "CP" => along(centre?),
                 "CR" => {
                     let ends = ([from[0], from[1], 0.0], [to[0], to[1], 0.0]);
                     let arc = CircularArc::with_radius(ends, [0, 1, 2], words.radius?, counter_clockwise, 1.0).ok()?;

@@ -167,15 +167,16 @@ impl<'a> Given<'a> {
             return Some(vec![end]);
         }
         let (first, others) = loci.split_first()?;
-        let mut found = carrier.meets(first);
-        if found.is_empty() {
-            // It may lie along the first.
-            found = others.first().map(|other| carrier.meets(other)).unwrap_or_default();
-            found.retain(|point| first.off(*point) < SAME);
-        }
-        found.retain(|point| others.iter().all(|locus| locus.off(*point) < SAME));
-        found.retain(|point| carrier.is_ahead(start, *point));
-        Some(found)
+        let fits = |point: &Flat| {
+            loci.iter().chain([carrier]).all(|locus| locus.off(*point) < SAME) && carrier.is_ahead(start, *point)
+        };
+        // Where the carrier lies along a locus or touches it, another one tells the place; where it touches both, they do.
+        let second = others.first();
+        let by_second = || second.map(|second| carrier.meets(second)).unwrap_or_default();
+        let by_both = || second.map(|second| first.meets(second)).unwrap_or_default();
+        let ways: [&dyn Fn() -> Vec<Flat>; 3] = [&|| carrier.meets(first), &by_second, &by_both];
+        let found = ways.iter().map(|way| Vec::from_iter(way().into_iter().filter(fits)));
+        Some(found.into_iter().find(|found| !found.is_empty()).unwrap_or_default())
     }
 
     /// Whether a carrier agrees with what is said of it, where it begins at a point.

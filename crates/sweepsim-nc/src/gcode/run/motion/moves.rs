@@ -141,6 +141,7 @@ impl Reader {
                 });
             }
         }
+        let to = self.along_angle(block, to)?;
         if self.modes.tilt.is_none() && *self.track.frame() != WorkFrame::default() {
             self.track.note(if self.offsets.work.is_given() {
                 "the place that is given for the work offset is applied"
@@ -192,6 +193,7 @@ impl Reader {
             }
             _ => {}
         }
+        self.corner_at_end(block)?;
         self.give(stroke)
     }
 
