@@ -203,12 +203,15 @@ impl Above<'_> {
 
     /// Turns a normal towards where both solids are farther apart: by the points that touch first.
     fn descend(&self, enough: f64, best: &mut Depth) {
-        let Some(mut short) = Normal::near(&best.normal) else {
+        let value_of = |normal: &Vector3<f64>| self.cell.top(normal, self.triangles).0 + self.below(normal);
+        // From what the surface looks like, or from the axis: beside a convex wall, what is round touches it elsewhere.
+        let away = self.during.on_axis(&self.cell.centre) - self.cell.centre;
+        let starts = [best.normal, away].into_iter().filter_map(|start| Normal::near(&start));
+        let starts = starts.map(|start| (value_of(&start.vector), start));
+        let Some((mut value, mut short)) = starts.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return;
         };
         let mut normal = short.vector;
-        let value_of = |normal: &Vector3<f64>| self.cell.top(normal, self.triangles).0 + self.below(normal);
-        let mut value = value_of(&normal);
         let mut step = 1.0 / self.during.run.solid.radius().max(1e-3);
         for _ in 0..STEPS {
             let apart = self.cell.top(&normal, self.triangles).1 - self.during.farthest(&-normal).1;

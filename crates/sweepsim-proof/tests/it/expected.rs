@@ -3,7 +3,7 @@
 use crate::scenes::sphere;
 use crate::standing::left_of;
 use crate::walls::{LIFT, LIMITS, TIPS, certified_with, extruded, slot};
-use sweepsim_motion::{Dovetail, Path, Pose, Tool};
+use sweepsim_motion::{Dovetail, Move, Path, Pose, TipArc, Tool};
 use sweepsim_proof::{Cutter, Limits, Target, cover_and_cores, deepest};
 
 /// Whatever is expected, what is found is true, and the limit is kept or not. Enclosures need not be narrow where
@@ -71,6 +71,31 @@ fn a_cutter_beside_many_triangles_is_soon_apart_from_them() {
     let found = deepest(&target, &[Cutter::new(&solids, &path, None)], &LIMITS, false, &()).expect("not cancelled");
     assert!(found.open.is_empty() && found.bound < LIMITS.depth, "{}", found.bound);
     assert!(found.pairs < 1000, "{}", found.pairs);
+}
+
+/// A round cutter touches a pillar elsewhere than in the middle of a face, and is soon seen to be beside it.
+#[test]
+fn a_cutter_around_a_pillar_touches_it_where_its_axis_is_nearest() {
+    let (radius, sides) = (1.157, 18);
+    let corner = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
+        [radius * cosine, radius * sine]
+    };
+    let pillar = extruded(&(0..sides).map(corner).collect::<Vec<_>>(), [0.0, 8.0]);
+    let (axis, centre, angle) = ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], 3.7_f64);
+    let pose = |angle: f64| {
+        let (sine, cosine) = angle.sin_cos();
+        Pose::new([centre[0], (radius + 4.0) * cosine, (radius + 4.0) * sine], axis).expect("a pose")
+    };
+    let arc = TipArc::new(centre, axis, angle).expect("an arc");
+    let path = Path::with_moves(vec![pose(0.0), pose(angle)], vec![Move::arc(arc)]).expect("a path");
+    let tool = Tool::flat(4.0, 30.0).expect("a tool");
+    let target = Target::new(&pillar, LIFT).expect("closed");
+    let limits = Limits::new(0.05, 0.005, 1_000_000);
+    let solids = cover_and_cores(&tool, 1e-4);
+    let found = deepest(&target, &[Cutter::new(&solids, &path, None)], &limits, false, &()).expect("not cancelled");
+    assert!(found.open.is_empty() && found.bound <= limits.depth, "{}", found.bound);
+    assert!(found.pairs < 20_000, "{}", found.pairs);
 }
 
 /// The dovetail ends where its neck begins: at that height, walls are half beside the one and half beside the other.
