@@ -46,9 +46,10 @@ pub enum SystemError {
         /// Variables given.
         variables: usize,
     },
-    /// A side of the domain is empty or infinite, or has too few numbers in it: it is no wider than 64 units in the last place.
+    /// A side of the domain is empty or infinite, or has too few numbers in it: it is no wider than 64 units in the
+    /// last place.
     #[error(
-        "the domain's side {variable} is not an interval of finite length, wider than 64 units in the last place of its ends"
+        "the domain's side {variable} must have a finite length of more than 64 units in the last place of its ends"
     )]
     Domain {
         /// The variable.
