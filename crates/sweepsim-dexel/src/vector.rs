@@ -29,6 +29,18 @@ pub(crate) fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The unit vector along another one, if that is not zero. Scaled by its largest number first, so that no square
+/// overflows.
+pub(crate) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let most = a.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+    if most == 0.0 {
+        return None;
+    }
+    let a = a.map(|c| c / most);
+    let length = dot(a, a).sqrt();
+    Some(a.map(|c| c / length))
+}
+
 /// Normal of a triangle, as long as twice its area.
 pub(crate) fn normal_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     cross(sub(b, a), sub(c, a))

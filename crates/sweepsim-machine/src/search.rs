@@ -59,7 +59,7 @@ pub struct Contact {
     pub number: usize,
     /// The time in it, from 0 to 1.
     pub time: f64,
-    /// How far both are apart then, at most; 0 if they overlap.
+    /// How far both are apart at that time or within the tolerance after it, at most; 0 if they overlap.
     pub distance: f64,
     /// The least shift that would separate them at the deepest of some times in the rest of the move, from above; 0 if
     /// they only touch, and where one of them is a surface.

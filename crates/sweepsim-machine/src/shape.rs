@@ -46,6 +46,15 @@ impl Convex {
         outline.windows(2).map(cone).collect()
     }
 
+    /// Whether it is not empty.
+    fn has_points(&self) -> bool {
+        match self {
+            Self::Block { .. } | Self::Triangle(_) => true,
+            Self::Hull(points) => !points.is_empty(),
+            Self::Turned { circles, .. } => !circles.is_empty(),
+        }
+    }
+
     /// The point that is farthest along `u`.
     pub(crate) fn support(&self, u: &Vector3<f64>) -> Vector3<f64> {
         match self {
@@ -105,13 +114,13 @@ pub(crate) struct Node {
 impl Body {
     /// A body of convex solids that is always there.
     ///
-    /// Triangles are taken as a surface, and the body is what they enclose. `None` if there is no solid, or a number is
-    /// not finite.
+    /// Triangles are taken as a surface, and the body is what they enclose. Solids without points are left out. `None`
+    /// if no solid is left, or a number is not finite.
     #[must_use]
     pub fn new(name: impl Into<String>, link: usize, solids: Vec<Convex>) -> Option<Self> {
         let hollow = solids.iter().any(|solid| matches!(solid, Convex::Triangle(_)));
         let mut items: Vec<(Convex, [Vector3<f64>; 2])> = Vec::with_capacity(solids.len());
-        for solid in solids {
+        for solid in solids.into_iter().filter(Convex::has_points) {
             let extent = solid.extent();
             if !extent.iter().all(|corner| corner.iter().all(|c| c.is_finite())) {
                 return None;

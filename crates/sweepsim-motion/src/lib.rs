@@ -30,6 +30,8 @@ pub use tool::{
     MeridianShape, Oval, Taper, Tool,
 };
 
+pub use nalgebra;
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -29,6 +29,7 @@ pub use step::{StepHeader, write_step};
 pub use summary::Summary;
 pub use surface::{EllipticSheet, Surface, SweptPiece, SweptSheet};
 
+pub use nalgebra;
 pub use sweepsim_dexel as dexel;
 
 /// The README's example is tested.

@@ -69,6 +69,8 @@ pub use jets::Derivatives;
 pub use knots::{KnotError, KnotKind, KnotVector};
 pub use spline::{BSpline, RationalPiece, RationalSpline, SplineError, SplinePiece};
 
+pub use nalgebra;
+
 /// Tests the README's example.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

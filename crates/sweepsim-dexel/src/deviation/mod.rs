@@ -165,8 +165,8 @@ impl<'a> Surface<'a> {
     }
 
     /// How far this surface is from another: at all ends of dexels; at all corners of triangles, and so that no point
-    /// of them is farther than `spacing` from a sample; and on walls that may be anywhere between two lines, from one
-    /// to the other. Distances up to `tolerance` count as 0.
+    /// of them is farther than `spacing` from a sample, as far as two million allow; and on walls that may be anywhere
+    /// between two lines, from one to the other. Distances up to `tolerance` count as 0.
     #[must_use]
     pub fn deviations_from(&self, other: &Self, spacing: f64, tolerance: f64) -> SurfaceDeviations {
         let of = |sample: &SurfaceSample| sample.deviation(|p| other.distance(p));

@@ -5,7 +5,7 @@ use crate::grid::Frame;
 use crate::intervals::End;
 use crate::mesh::{FaceSurfaces, TriangleSoup};
 use crate::tri::TriDexels;
-use crate::vector::{length, normal_of, sub};
+use crate::vector::{along, dot, length, normal_of, sub};
 use rayon::prelude::*;
 use smallvec::{SmallVec, smallvec};
 use std::collections::HashMap;
@@ -57,6 +57,57 @@ fn longest(corners: &[[f64; 3]; 3]) -> (usize, f64) {
     (k, sides[k])
 }
 
+/// A piece is thin if it is no higher than this part of the spacing.
+const THIN: f64 = 0.25;
+
+/// Pieces of a triangle: a place in the middle of each, and its area. No point of a piece is farther than `spacing` from
+/// that place.
+fn pieces(corners: [[f64; 3]; 3], spacing: f64) -> Vec<([f64; 3], f64)> {
+    let mut found = Vec::new();
+    let mut open = vec![(corners, 0.5 * length(normal_of(corners)))];
+    while let Some((piece, area)) = open.pop() {
+        let (k, long) = longest(&piece);
+        let [a, b, c] = [piece[k], piece[(k + 1) % 3], piece[(k + 2) % 3]];
+        if long <= 1.5 * spacing {
+            // No point is farther from the centroid than two thirds of the longest side.
+            found.push(([0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0), area));
+        } else if 2.0 * area <= THIN * spacing * long {
+            slices([a, b, c], area, spacing, &mut found);
+        } else {
+            // Halved across the longest side.
+            let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
+            open.extend([([a, middle, c], 0.5 * area), ([middle, b, c], 0.5 * area)]);
+        }
+    }
+    found
+}
+
+/// Of a thin triangle whose longest side is from `a` to `b`: slices across it. Halves would be three times as many each
+/// time that the longest side is halved.
+fn slices([a, b, c]: [[f64; 3]; 3], area: f64, spacing: f64, found: &mut Vec<([f64; 3], f64)>) {
+    let side = sub(b, a);
+    // Where the third corner is above that side, and what part of the area is before a place of it.
+    let top = (dot(sub(c, a), side) / dot(side, side)).clamp(1e-9, 1.0 - 1e-9);
+    let before = |x: f64| {
+        if x < top {
+            x * x / top
+        } else {
+            1.0 - (1.0 - x) * (1.0 - x) / (1.0 - top)
+        }
+    };
+    let count = (length(side) / spacing).ceil();
+    found.extend((0..count as usize).map(|number| {
+        let [from, middle, to] = [0.0, 0.5, 1.0].map(|part| (number as f64 + part) / count);
+        let lower = along(a, middle, side);
+        let upper = if middle < top {
+            along(a, middle / top, sub(c, a))
+        } else {
+            along(b, (1.0 - middle) / (1.0 - top), sub(c, b))
+        };
+        (along(lower, 0.5, sub(upper, lower)), area * (before(to) - before(from)))
+    }));
+}
+
 /// On triangles: at all corners, and so that no point is farther than `spacing` from the next sample, or than is
 /// possible with two million. Where the surfaces of faces are known, samples are on these.
 pub(super) fn on_triangles(
@@ -65,6 +116,8 @@ pub(super) fn on_triangles(
     spacing: f64,
     of: impl Fn(&SurfaceSample) -> Option<SampleDeviation> + Sync,
 ) -> Vec<SampleDeviation> {
+    // NaN asks for the finest that is possible.
+    let spacing = spacing.max(0.0);
     let area = |t: &[[f64; 3]; 3]| 0.5 * length(normal_of(*t));
     let is_solid = |(_, corners): &(usize, &[[f64; 3]; 3])| area(corners) > 0.0 && area(corners).is_finite();
     let solid: Vec<(usize, &[[f64; 3]; 3])> = soup.triangles.iter().enumerate().filter(is_solid).collect();
@@ -95,22 +148,8 @@ pub(super) fn on_triangles(
         // Of the triangles around a corner only the first.
         let own = corners.iter().filter(|place| first.get(&bits(**place)) == Some(number));
         let mut found: Vec<SampleDeviation> = own.filter_map(|place| sample(*place, 0.0)).collect();
-        // Halved across the longest side, so that pieces of thin triangles become short, too.
-        let mut open = vec![(**corners, area(corners))];
-        while let Some((piece, share)) = open.pop() {
-            let (k, long) = longest(&piece);
-            // No point is farther from the centroid than two thirds of the longest side.
-            if long <= 1.5 * spacing {
-                found.extend(sample(
-                    [0, 1, 2].map(|c| (piece[0][c] + piece[1][c] + piece[2][c]) / 3.0),
-                    share,
-                ));
-                continue;
-            }
-            let [a, b, c] = [piece[k], piece[(k + 1) % 3], piece[(k + 2) % 3]];
-            let middle = [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]));
-            open.extend([([a, middle, c], 0.5 * share), ([middle, b, c], 0.5 * share)]);
-        }
+        let pieces = pieces(**corners, spacing).into_iter();
+        found.extend(pieces.filter_map(|(place, area)| sample(place, area)));
         found
     };
     solid.par_iter().flat_map_iter(of_triangle).collect()
@@ -166,6 +205,9 @@ mod tests {
         for corners in [
             [[0.0; 3], [7.0, 1.0, 0.0], [2.0, 5.0, 3.0]],
             [[0.0; 3], [50.0, 0.0, 0.0], [50.0, 0.001, 0.0]],
+            [[0.0; 3], [0.0, 0.1, 0.0], [-30.0, 0.0, 20.0]],
+            [[0.0; 3], [9.0, 0.0, 0.0], [3.0, 0.06, 0.0]],
+            [[0.0; 3], [20.0, 0.0, 0.0], [-9.0, 1.0, 0.0]],
         ] {
             let soup = TriangleSoup {
                 triangles: vec![corners],
@@ -175,6 +217,8 @@ mod tests {
             });
             let total: f64 = found.iter().map(|sample| sample.area).sum();
             assert!((total - 0.5 * length(normal_of(corners))).abs() < 1e-9 * total);
+            // About as many as cells of that size would be.
+            assert!((found.len() as f64) < 16.0 * total / 0.25 + 2.0 * longest(&corners).1 / 0.5 + 3.0);
             for k in 0..=40 {
                 for l in 0..=40 - k {
                     let [u, v] = [k, l].map(|c| f64::from(c) / 40.0);

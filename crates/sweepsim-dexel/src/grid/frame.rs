@@ -1,6 +1,6 @@
 //! User-defined coordinate frames.
 
-use crate::vector::{cross, dot};
+use crate::vector::{cross, dot, unit};
 use thiserror::Error;
 
 /// A right-handed frame of three perpendicular unit vectors.
@@ -40,17 +40,6 @@ pub enum FrameError {
 const SKEW: f64 = 1e-12;
 /// Below this sine, x counts as parallel to z.
 const LEAST: f64 = 1e-9;
-
-/// Scaled by its largest number first, so that no square overflows.
-fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let most = a.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-    if most == 0.0 {
-        return None;
-    }
-    let a = a.map(|c| c / most);
-    let length = dot(a, a).sqrt();
-    Some(a.map(|c| c / length))
-}
 
 impl Default for Frame {
     fn default() -> Self {

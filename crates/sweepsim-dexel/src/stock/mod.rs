@@ -7,7 +7,7 @@ use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Grid;
 use crate::intervals::{End, Interval, Source};
 use crate::mesh::{MeshError, TriangleSoup};
-use crate::vector::LARGEST;
+use crate::vector::{LARGEST, unit};
 pub(crate) use from_mesh::mesh_dexels;
 use std::sync::Arc;
 use thiserror::Error;
@@ -165,8 +165,7 @@ impl Stock {
                 radius,
                 height,
             } => {
-                let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
-                let way = axis.map(|c| c / length);
+                let way = unit(*axis)?;
                 let around = way.map(|c| radius * (1.0 - c * c).max(0.0).sqrt());
                 let top = [0, 1, 2].map(|k| base[k] + height * way[k]);
                 let corner = |end: [f64; 3], sign: f64| [0, 1, 2].map(|k| end[k] + sign * around[k]);
@@ -306,12 +305,10 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
 }
 
 fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Result<Dexels, StockError> {
-    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
     let finite = axis.iter().all(|c| c.is_finite()) && base.iter().chain([&radius, &height]).all(|c| fits(*c));
-    if !(finite && length > 0.0 && radius > 0.0 && height > 0.0) {
-        return Err(StockError::Cylinder { radius, height });
-    }
-    let a = grid.frame().turn_from_world(axis.map(|c| c / length));
+    let way = unit(axis).filter(|_| finite && radius > 0.0 && height > 0.0);
+    let way = way.ok_or(StockError::Cylinder { radius, height })?;
+    let a = grid.frame().turn_from_world(way);
     let base = grid.frame().from_world(base);
     Ok(Dexels::filled(*grid, |index, line| {
         let (i, j) = grid.place(index);

@@ -238,3 +238,15 @@ proptest! {
         });
     }
 }
+
+#[test]
+fn thin_triangles_have_few_samples_whatever_the_spacing() {
+    let thin = TriangleSoup {
+        triangles: vec![[[0.0; 3], [1e9, 0.0, 0.0], [0.0, 1e-9, 0.0]]],
+    };
+    let surface = Surface::of_triangles(&thin).unwrap();
+    for spacing in [f64::NAN, -1.0, 0.0, 1.0] {
+        let found = surface.deviations_from(&surface, spacing, 1e-6);
+        assert!(found.points.len() <= 2_000_003, "{spacing}: {}", found.points.len());
+    }
+}

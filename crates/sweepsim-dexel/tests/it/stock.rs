@@ -16,6 +16,22 @@ fn a_block_and_its_mesh_are_the_same() {
 }
 
 #[test]
+fn the_axis_of_a_cylinder_may_have_any_length() {
+    let cylinder = |length: f64| Stock::Cylinder {
+        base: [0.0; 3],
+        axis: [0.0, length, length],
+        radius: 1.0,
+        height: 2.0,
+    };
+    let dexels = cylinder(1.0).dexels(&grid()).unwrap();
+    for length in [5e-324, 1e-300, 1e-160, 1e160, 1e300] {
+        assert_eq!(cylinder(length).dexels(&grid()).unwrap(), dexels, "{length}");
+        assert_eq!(cylinder(length).bounds(), cylinder(1.0).bounds(), "{length}");
+    }
+    assert!(cylinder(0.0).bounds().is_none() && cylinder(0.0).dexels(&grid()).is_err());
+}
+
+#[test]
 fn cylinders_of_all_directions_have_their_volume() {
     for axis in [
         [0.0, 0.0, 2.0],

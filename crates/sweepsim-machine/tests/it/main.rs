@@ -322,3 +322,26 @@ fn work_is_bounded() {
     assert!(matches!(found(100_000), Outcome::Contact(_)), "{:?}", found(100_000));
     assert!(matches!(found(3), Outcome::Open(0, _)), "{:?}", found(3));
 }
+
+#[test]
+fn a_solid_without_points_makes_no_body() {
+    let empty = [
+        Convex::Hull(Vec::new()),
+        Convex::Turned {
+            base: [0.0; 3],
+            axis: Vector3::z_axis(),
+            circles: Vec::new(),
+        },
+    ];
+    for solid in empty {
+        assert!(Body::new("nothing", 0, vec![solid.clone()]).is_none());
+        // Nor does it add a point to others.
+        let block = Convex::Block {
+            min: [10.0; 3],
+            max: [20.0; 3],
+        };
+        let body = Body::new("block", 0, vec![block.clone(), solid]).expect("a block");
+        assert_eq!(body.extent(), [[10.0; 3], [20.0; 3]]);
+        assert_eq!(body.solids().collect::<Vec<_>>(), [&block]);
+    }
+}

@@ -77,8 +77,8 @@ impl TipArc {
     /// direction from the axis, it is a full turn.
     ///
     /// # Errors
-    /// [`ArcError`]: as [`new`](Self::new), and ends on the axis or with distances from it that differ by more than a
-    /// thousandth.
+    /// [`ArcError`]: as [`new`](Self::new), `turns` of 0, and ends on the axis or with distances from it that differ by
+    /// more than a thousandth.
     ///
     /// ```
     /// use sweepsim_motion::TipArc;
@@ -112,7 +112,7 @@ impl TipArc {
         if angle <= 1e-12 {
             angle += full;
         }
-        Self::new(centre, normal, sign * (angle + full * (f64::from(turns.abs()) - 1.0)))
+        Self::new(centre, normal, sign * (angle + full * (f64::from(turns).abs() - 1.0)))
     }
 
     /// The same arc about a centre at the same distance from both of its ends, which programs give with few decimals:

@@ -1,9 +1,10 @@
 //! Misuse of the public constructors: numbers that are not finite, wrong sizes, absurd measures. Errors, never a panic.
 
 use nalgebra::Matrix3;
+use std::f64::consts::PI;
 use sweepsim_motion::{
-    Apt, Barrel, Dovetail, Law, Lens, Lollipop, Move, Oval, Path, Pose, Profile, ProfileError, ProfileSegment,
-    RotaryTable, SplineMotion, Taper, TipArc, Tool, Turn, Turning,
+    Apt, ArcError, Barrel, Dovetail, Law, Lens, Lollipop, Move, Oval, Path, Pose, Profile, ProfileError,
+    ProfileSegment, RotaryTable, SplineMotion, Taper, TipArc, Tool, Turn, Turning,
 };
 use sweepsim_props::collection::vec;
 use sweepsim_props::*;
@@ -162,6 +163,15 @@ proptest! {
 }
 
 /// A profile of many segments is a profile, one of too many is refused before anything is computed.
+#[test]
+fn arcs_of_more_turns_than_fit_are_errors() {
+    let between = |turns| TipArc::between([2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], turns);
+    assert!((between(-3).unwrap().angle() + 5.5 * PI).abs() < 1e-12);
+    for turns in [0, 20_000, -20_000, i32::MAX, i32::MIN] {
+        assert!(matches!(between(turns), Err(ArcError::Angle(_))), "{turns}");
+    }
+}
+
 #[test]
 fn profiles_of_many_segments() {
     let most = Profile::MOST_SEGMENTS;

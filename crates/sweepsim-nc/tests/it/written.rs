@@ -375,3 +375,19 @@ fn rounded_numbers() {
         assert!((arcs[0] - std::f64::consts::TAU).abs() < 1e-9);
     }
 }
+
+#[test]
+fn more_decimals_than_a_number_has_are_all_of_them() {
+    let program = read("G21 G90\nG0 X0.1 Y0 Z5\nG1 X-2.5 F200\n", Controller::LinuxCnc);
+    for controller in ALL {
+        let mut options = dialect(controller);
+        options.decimals = 1_074;
+        let all = write::gcode(&program, &options).unwrap();
+        options.decimals = usize::MAX;
+        assert_eq!(write::gcode(&program, &options).unwrap(), all);
+        assert_eq!(
+            read(&all.text, controller).poses.iter().next().unwrap().pose.tip(),
+            [0.1, 0.0, 5.0]
+        );
+    }
+}

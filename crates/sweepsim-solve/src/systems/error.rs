@@ -46,8 +46,11 @@ pub enum SystemError {
         /// Variables given.
         variables: usize,
     },
-    /// A side of the domain is empty or infinite, or so far from 0 that its ends are adjacent numbers.
-    #[error("the domain's side {variable} is not an interval of positive finite length")]
+    /// A side of the domain is empty or infinite, or has too few numbers in it: it is no wider than 64 units in the
+    /// last place.
+    #[error(
+        "the domain's side {variable} must have a finite length of more than 64 units in the last place of its ends"
+    )]
     Domain {
         /// The variable.
         variable: usize,

@@ -171,3 +171,15 @@ fn budgets_hold_and_name_what_is_left() {
     limited(options().time(Some(Duration::ZERO)), Cause::Time, &());
     limited(options(), Cause::Cancelled, &Stop);
 }
+
+#[test]
+fn a_domain_of_few_numbers_says_so() {
+    let far = |units: f64| [Enclosure::new(1.0, 1.0 + units * f64::EPSILON).unwrap()];
+    let parse = |units| System::parse(&["x = 1"], &["x"], &far(units));
+    assert!(parse(66.0).is_ok());
+    let error = parse(60.0).unwrap_err().to_string();
+    assert!(
+        error.contains("side 0") && error.contains("64 units in the last place"),
+        "{error}"
+    );
+}

@@ -160,8 +160,12 @@ pub fn gcode(program: &Program, options: &GcodeOptions) -> Result<GcodeText, Gco
     Ok(GcodeText { text, lost: plan.lost })
 }
 
+/// No number has more decimals.
+const MOST_DECIMALS: usize = 1_074;
+
 /// A number with at most this many decimals, without exponent.
 fn number(value: f64, decimals: usize) -> String {
+    let decimals = decimals.min(MOST_DECIMALS);
     let mut text = format!("{value:.decimals$}");
     if text.contains('.') {
         let end = text.trim_end_matches('0').trim_end_matches('.').len();
