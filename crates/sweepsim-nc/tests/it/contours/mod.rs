@@ -215,17 +215,23 @@ proptest! {
         let mut options = ReadOptions::default();
         options.exact_arcs = true;
         let found = if klartext { heidenhain::read(&text, &options) } else { siemens::read(&text, &options) };
+        // The angle between the moves, where the arc leaves the corner.
+        let between = centre.map(|c| {
+            let side = (c[0] * far[1] - c[1] * far[0]).signum();
+            (side * c[1] / distance_to_point(c, [0.0; 2])).acos().to_degrees()
+        });
         let program = match found {
+            // Moves that turn by no more than one degree have no corner.
+            Ok(program) if program.poses.len() == 3 => {
+                prop_assert!(between.is_some_and(|between| between > 178.99), "{text}");
+                return Err(TestCaseError::reject("no corner"));
+            }
             Ok(program) => program,
             // The corner takes more than the moves have: 20 mm.
             Err(error) => {
                 prop_assert!(error.to_string().contains("must be smaller"), "{error}\n{text}");
-                // The angle between the moves, where the arc leaves the corner.
-                let Some(c) = centre else { panic!("lines have room for each of these corners: {text}") };
-                let side = (c[0] * far[1] - c[1] * far[0]).signum();
-                let size = distance_to_point(c, [0.0; 2]);
-                let between = (side * c[1] / size).acos();
-                let half = (0.5 * between).tan();
+                let Some(between) = between else { panic!("lines have room for each of these corners: {text}") };
+                let half = (0.5 * between.to_radians()).tan();
                 // The wedge ends where the arc bends back to the line.
                 prop_assert!(radius / half > 5.0_f64.min(8.0 * half), "{error}\n{text}");
                 return Err(TestCaseError::reject("no room for the corner"));
@@ -233,6 +239,7 @@ proptest! {
         };
         let _ = samples(&program, 0..program.poses.len());
         prop_assert_eq!(program.poses.len(), 4, "{}", text);
+        prop_assert!(between.is_none_or(|between| between < 179.01), "{text}");
         let TipCourse::Arc(arc) = program.poses[2].way().course else { panic!("{text}") };
         let c: [f64; 3] = arc.centre();
         let c = [c[0], c[1]];
