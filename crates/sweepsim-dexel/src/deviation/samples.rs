@@ -60,8 +60,8 @@ fn longest(corners: &[[f64; 3]; 3]) -> (usize, f64) {
 /// A piece is thin if it is no higher than this part of the spacing.
 const THIN: f64 = 0.25;
 
-/// Pieces of a triangle: a place in the middle of each, and its area. No point of a piece is farther than `spacing` from
-/// that place.
+/// Pieces of a triangle: a place in the middle of each, and its area. No point of a piece is farther than `spacing`
+/// from that place.
 fn pieces(corners: [[f64; 3]; 3], spacing: f64) -> Vec<([f64; 3], f64)> {
     let mut found = Vec::new();
     let mut open = vec![(corners, 0.5 * length(normal_of(corners)))];

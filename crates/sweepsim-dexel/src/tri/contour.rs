@@ -333,8 +333,8 @@ impl Face<'_> {
         Ring { corners, keys }
     }
 
-    /// Two triangles, along the diagonal that stays closer to the tangent plane; along the other one where they would lie
-    /// on each other, on a flat face beside an edge that bends inwards.
+    /// Two triangles, along the diagonal that stays closer to the tangent plane; along the other one where they would
+    /// lie on each other, on a flat face beside an edge that bends inwards.
     fn halves(&self, lattice: &Lattice, mesh: &Mesh, [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
         let place = lattice.place(self.axis, self.at, self.hit);
         let p = [a, b, c, d].map(|n| mesh.vertices[n as usize]);

@@ -52,6 +52,15 @@ fn solid(cells: usize, stock: &Stock) -> TriDexels {
     TriDexels::new([-10.0; 3], [10.0; 3], [cells, cells + 1, cells + 2], stock).unwrap()
 }
 
+fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Stock {
+    Stock::Cylinder {
+        base,
+        axis,
+        radius,
+        height,
+    }
+}
+
 #[test]
 fn boxes_are_sharp() {
     let (min, max) = ([-6.13, -4.4, -5.77], [3.3, 5.21, 7.19]);
@@ -80,25 +89,14 @@ fn boxes_are_sharp() {
 /// Beside an edge that bends inwards, no triangle of a flat face lies on another.
 #[test]
 fn flat_faces_are_not_folded() {
-    let [base, axis] = [[1.3, -0.7, -2.1], [0.0, 0.0, 1.0]];
-    let (radius, height) = (6.3, 20.0);
-    let hole = Stock::Cylinder {
-        base,
-        axis,
-        radius,
-        height,
-    };
+    let hole = cylinder([1.3, -0.7, -2.1], [0.0, 0.0, 1.0], 6.3, 20.0);
     let (min, max) = ([-9.1; 3], [9.1; 3]);
     let part = Stock::Difference(Box::new(Stock::Block { min, max }), vec![hole]);
     let soup = solid(24, &part).surface().unwrap().soup().unwrap();
-    for level in [base[2], max[2]] {
+    for level in [-2.1, 9.1] {
         let is_level = |t: &&[[f64; 3]; 3]| t.iter().all(|p| (p[2] - level).abs() < 1e-6);
-        let heights: Vec<f64> = soup
-            .triangles
-            .iter()
-            .filter(is_level)
-            .map(|t| normal_of(*t)[2])
-            .collect();
+        let level = { soup.triangles.iter() }.filter(is_level);
+        let heights: Vec<f64> = level.map(|t| normal_of(*t)[2]).collect();
         assert!(heights.len() > 300 && heights.iter().all(|up| *up >= 0.0));
     }
 }
@@ -173,12 +171,6 @@ fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
 #[test]
 fn volumes_converge_with_the_square_of_the_distance_of_lines() {
     let ball = |centre: [f64; 3], radius: f64| Stock::Ball { centre, radius };
-    let cylinder = |base: [f64; 3], axis: [f64; 3], radius: f64, height: f64| Stock::Cylinder {
-        base,
-        axis,
-        radius,
-        height,
-    };
     let tau = std::f64::consts::TAU;
     // A lens of two balls of radius 6, 7 apart: π (4r + d) (2r − d)² / 12.
     let lens = Stock::Intersection(vec![ball([-3.4, 0.3, 0.2], 6.0), ball([3.6, 0.3, 0.2], 6.0)]);
@@ -204,12 +196,7 @@ fn volumes_converge_with_the_square_of_the_distance_of_lines() {
 #[test]
 fn edges_of_any_direction_are_sharp() {
     // A cylinder's rim, and the edge where a ball cuts it.
-    let cylinder = Stock::Cylinder {
-        base: [-5.0, -3.0, -4.0],
-        axis: [3.0, 2.0, 2.5],
-        radius: 4.0,
-        height: 11.0,
-    };
+    let cylinder = cylinder([-5.0, -3.0, -4.0], [3.0, 2.0, 2.5], 4.0, 11.0);
     let dexels = solid(60, &cylinder);
     let solid_surface = dexels.solid_surface().unwrap();
     check_solid(&solid_surface);
@@ -294,12 +281,8 @@ fn part() -> impl Strategy<Value = Stock> {
             max: [0, 1, 2].map(|k| min[k] + size[k])
         }),
         (place.clone(), 1.0..7.0_f64).prop_map(|(centre, radius)| Stock::Ball { centre, radius }),
-        (place.clone(), place, 1.0..4.0_f64, 2.0..14.0_f64).prop_map(|(base, axis, radius, height)| Stock::Cylinder {
-            base,
-            axis,
-            radius,
-            height
-        }),
+        (place.clone(), place, 1.0..4.0_f64, 2.0..14.0_f64)
+            .prop_map(|(base, axis, radius, height)| cylinder(base, axis, radius, height)),
     ]
 }
 
