@@ -156,7 +156,7 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
     // A checker of heights takes it as given that triangles do not cross.
     let is_height = |asked: &&Asked| asked.measure == Measure::Height;
     let heights = asked.statements.iter().filter(is_height);
-    let crosses = heights.flat_map(|asked| &asked.obstacles).find_map(|number| {
+    let fault = heights.flat_map(|asked| &asked.obstacles).find_map(|number| {
         let soup = asked.obstacles[*number].triangles.as_ref();
         let solid = soup
             .map_err(String::clone)
@@ -175,12 +175,13 @@ pub fn check(file: &Path, threads: usize) -> Result<CheckedCertificate, JobError
         claimed: claim
             .as_ref()
             .map(|claim| (claim.bound, claim.witness.as_ref().map(|witness| witness.depth))),
-        checked: claim.map_or_else(Checked::default, |claim| {
-            let mut checked = sweepsim_check::check(&own, question, &claim, threads);
-            if question.measure == Measure::Height && checked.wrong.is_none() {
-                checked.wrong.clone_from(&crosses);
+        checked: claim.map_or_else(Checked::default, |claim| match &fault {
+            Some(_) if question.measure == Measure::Height => {
+                let mut refused = Checked::default();
+                refused.wrong.clone_from(&fault);
+                refused
             }
-            checked
+            _ => sweepsim_check::check(&own, question, &claim, threads),
         }),
     };
     Ok(CheckedCertificate {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use sweepsim_check::{Certificate, digest_of};
 use sweepsim_dexel::TriangleSoup;
-use sweepsim_job::{CheckedStatement, Measure, Output, Request, check};
+use sweepsim_job::{Measure, Output, Request, check};
 use tempfile::TempDir;
 
 const JOB: &str = r#"Job(
@@ -66,19 +66,35 @@ fn certificate(folder: &TempDir, job: &Path) -> (PathBuf, Vec<u8>) {
     (file, text.into_bytes())
 }
 
-/// What is said of targets as solids is not proven; the rest is.
+/// Nothing is proven of how high something stands above a target that is no solid, whatever is claimed of it; the rest
+/// is.
 #[test]
 fn a_certificate_of_a_target_that_crosses_itself_can_be_checked() {
     let mut target = slotted([15.0, 25.0], -4.0);
     let peg = TriangleSoup::block([30.2, 30.2, -5.0], [30.3, 30.3, 1.0]);
     target.triangles.extend(peg.triangles);
     let (folder, job) = with_target(JOB, &target);
-    let (file, _) = certificate(&folder, &job);
+    let (file, text) = certificate(&folder, &job);
+    let honest = check(&file, 1).expect("it belongs to its files");
+    let [fixture, excess] = ["fixture", "excess"].map(|about| {
+        let number = honest.statements.iter().position(|statement| statement.about == about);
+        number.expect("a statement")
+    });
+    assert!(honest.statements[fixture].holds() && !honest.holds());
+    assert!(honest.statements[excess].claimed.is_none());
+    // The claim of a target without the peg.
+    let mut forged = Certificate::read(&text).expect("a certificate");
+    let (_folder, _, other) = certified();
+    let other = Certificate::read(&other).expect("a certificate");
+    forged.claims[excess].clone_from(&other.claims[excess]);
+    fs::write(&file, forged.written().expect("a notation")).expect("written");
     let checked = check(&file, 1).expect("it belongs to its files");
-    let of = |about: &str| checked.statements.iter().find(|statement| statement.about == about);
-    assert!(of("fixture").is_some_and(CheckedStatement::holds));
-    assert!(of("excess").is_some_and(|excess| !excess.holds()));
-    assert!(!checked.holds());
+    let wrong = checked.statements[excess].checked.wrong.as_deref();
+    assert!(checked.statements[excess].claimed.is_some() && !checked.statements[excess].holds());
+    assert!(
+        wrong.is_some_and(|why| why.starts_with("the target intersects itself")),
+        "{wrong:?}"
+    );
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use sweepsim_nc::{Assumption, Controller, Program, ReadOptions, gcode, heidenhain, siemens};
 
+use crate::found::tips;
+
 fn read_with(text: &str, change: impl FnOnce(&mut ReadOptions)) -> Program {
     let mut options = ReadOptions::default();
     change(&mut options);
@@ -16,10 +18,6 @@ fn strict(text: &str) -> String {
     let mut options = ReadOptions::default();
     options.strict = true;
     gcode::read(text, &options).expect_err(text).to_string()
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
 }
 
 /// The one assumption of a program, which is a note of the same words too.

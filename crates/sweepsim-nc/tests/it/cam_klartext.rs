@@ -2,32 +2,29 @@
 
 use sweepsim_nc::{CutterKind, Program, ReadOptions, heidenhain};
 
+use crate::found::rounded_tips;
+
 fn read(text: &str) -> Program {
     heidenhain::read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    let round = |c: f64| (c * 1e9).round() / 1e9 + 0.0;
-    program.poses.iter().map(|pose| pose.pose.tip().map(round)).collect()
 }
 
 #[test]
 fn back_along_the_tool() {
     let start = "L X+0 Y+0 Z+5 FMAX\nL Z-1 F100\n";
     assert_eq!(
-        *tips(&read(&format!("{start}L M140 MB50 FMAX"))).last().unwrap(),
+        *rounded_tips(&read(&format!("{start}L M140 MB50 FMAX"))).last().unwrap(),
         [0.0, 0.0, 49.0]
     );
     // In a tilted plane the tool's axis is its z.
     let tilted = format!("PLANE SPATIAL SPA+0 SPB+90 SPC+0 TURN FMAX\n{start}L M140 MB+10 F500\n");
     let program = read(&tilted);
-    assert_eq!(*tips(&program).last().unwrap(), [9.0, 0.0, 0.0]);
+    assert_eq!(*rounded_tips(&program).last().unwrap(), [9.0, 0.0, 0.0]);
     assert!(!program.poses.last().unwrap().rapid);
     // To the end of the travel: where that is, only the machine knows.
     let program = read(&format!(
         "{start}M140 MB MAX\nL X+9 Y+9 R0 FMAX\nL Z+5 FMAX\nL Z-1 F100\n"
     ));
-    assert_eq!(tips(&program)[2..], [[9.0, 9.0, 5.0], [9.0, 9.0, -1.0]]);
+    assert_eq!(rounded_tips(&program)[2..], [[9.0, 9.0, 5.0], [9.0, 9.0, -1.0]]);
     let [assumed] = &program.assumptions[..] else {
         panic!("{:?}", program.assumptions)
     };
@@ -42,7 +39,7 @@ fn angles_that_a_plane_needs() {
     // Turned by 90° about X, then by 180° about Z: z is the part's +y.
     let axis = last.pose.axis();
     assert!((axis[1] - 1.0).abs() < 1e-9, "{axis:?}");
-    assert_eq!(tips(&program).last().unwrap(), &[0.0, 1.0, 0.0]);
+    assert_eq!(rounded_tips(&program).last().unwrap(), &[0.0, 1.0, 0.0]);
     let [assumed] = &program.assumptions[..] else {
         panic!("{:?}", program.assumptions)
     };
@@ -84,7 +81,7 @@ fn cycles_of_builders_and_probes() {
     let text = "L X+0 Y+0 Z+5 FMAX\nCYCL DEF 392 ATC~\nQ240=+1 ;MODE~\nQ241=+3 ;WEIGHT\nTCH PROBE 412 DATUM INSIDE CIRCLE~\nQ321=+0 ;CENTRE\nCYCL DEF 240 CENTERING~\nQ200=+2~\nQ343=+1~\nQ201=-9~\nQ344=-6~\nQ206=+100~\nQ203=+0~\nQ204=+50\nCYCL CALL\n";
     let program = read(text);
     // A point of 90 degrees is 3 mm deep where it is 6 mm wide.
-    assert!(tips(&program).contains(&[0.0, 0.0, -3.0]));
+    assert!(rounded_tips(&program).contains(&[0.0, 0.0, -3.0]));
     let what: Vec<&str> = program.assumptions.iter().map(|one| one.what.as_str()).collect();
     assert_eq!(
         what,
@@ -93,5 +90,5 @@ fn cycles_of_builders_and_probes() {
     let deep = read(
         "CYCL DEF 241 Q200=2 Q201=-40 Q206=100 Q211=0 Q203=0 Q204=50 Q379=5 Q253=750 Q208=1000\nL X+1 Y+2 Z+50 FMAX M99\n",
     );
-    assert!(tips(&deep).contains(&[1.0, 2.0, -40.0]));
+    assert!(rounded_tips(&deep).contains(&[1.0, 2.0, -40.0]));
 }

@@ -3,16 +3,14 @@
 use sweepsim_nc::gcode::read;
 use sweepsim_nc::{Program, ReadOptions};
 
+use crate::found::tips;
+
 fn program(text: &str) -> Program {
     read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
 fn error(text: &str) -> String {
     read(text, &ReadOptions::default()).expect_err(text).to_string()
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
 }
 
 /// `text` between two moves: the poses are those of the moves alone, and the notes are `notes`.

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use sweepsim_motion::TipCourse;
 use sweepsim_nc::{EventKind, Program, ReadOptions, StockDescription, heidenhain};
 
+use crate::found::{near, tips};
+
 fn exact(text: &str) -> Program {
     let mut options = ReadOptions::default();
     options.exact_arcs = true;
@@ -15,21 +17,6 @@ fn error(text: &str) -> String {
     let mut strict = ReadOptions::default();
     strict.strict = true;
     heidenhain::read(text, &strict).unwrap_err().to_string()
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
-}
-
-#[track_caller]
-fn near(found: [f64; 3], expected: [f64; 3]) {
-    let off = found
-        .iter()
-        .zip(expected)
-        .map(|(a, b)| (a - b).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    assert!(off < 1e-9, "{found:?}, expected {expected:?}");
 }
 
 #[track_caller]

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use sweepsim_nc::{EventKind, FeedMode, NcError, Program, ReadOptions, Spindle, heidenhain};
 
+use crate::found;
+
 const START: &str = "TOOL CALL 1 Z S1000 F300\nL X+0 Y+0 Z+0 R0 FMAX M3\n";
 
 fn attempt(text: &str) -> Result<Program, NcError> {
@@ -27,14 +29,12 @@ fn error(text: &str) -> String {
 }
 
 fn tips(text: &str) -> Vec<[f64; 3]> {
-    read(text).poses.iter().map(|pose| pose.pose.tip()).collect()
+    found::tips(&read(text))
 }
 
 #[track_caller]
 fn ends_at(text: &str, tip: [f64; 3]) {
-    let found = *tips(text).last().unwrap();
-    let off = found.iter().zip(tip).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(off < 1e-9, "{found:?}, expected {tip:?}\n{text}");
+    found::near(*tips(text).last().unwrap(), tip);
 }
 
 fn assumes(text: &str, what: &str) -> bool {

@@ -8,6 +8,7 @@ mod cam_klartext;
 mod contents;
 mod contour_cycles;
 mod contours;
+mod found;
 mod free_contours;
 mod fuzz;
 mod gcode;

@@ -3,14 +3,11 @@
 use sweepsim_nc::write::{self, GcodeOptions};
 use sweepsim_nc::{Controller, Program, ReadOptions, gcode, read_text};
 
+use crate::found::rounded_tips;
+
 fn read(text: &str) -> Program {
     let name = std::path::Path::new("part.min");
     read_text(text, name, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    let round = |c: f64| (c * 1e9).round() / 1e9 + 0.0;
-    program.poses.iter().map(|pose| pose.pose.tip().map(round)).collect()
 }
 
 const HEAD: &str = "$BRACKET.MIN%\nO1000 (FIRST SIDE)\nN10 G00 G17 G40 G80 G90 G94\nG21\n(T5 D=6. CR=0. - ZMIN=-3. - flat end mill)\nN20 M06 T5\nG15 H1\nG00 X0 Y0\nG56 Z50. H5\n";
@@ -23,7 +20,10 @@ fn a_program_is_recognised_and_read() {
         (Some(Controller::Okuma), Some("BRACKET"))
     );
     assert_eq!(program.tools[&5].diameter, Some(6.0));
-    assert_eq!(tips(&program), [[0.0, 0.0, 50.0], [0.0, 0.0, -1.0], [20.0, 0.0, -1.0]]);
+    assert_eq!(
+        rounded_tips(&program),
+        [[0.0, 0.0, 50.0], [0.0, 0.0, -1.0], [20.0, 0.0, -1.0]]
+    );
     assert!(program.poses.iter().all(|pose| pose.tool == Some(5)));
     // Another offset is elsewhere, under its own name.
     let second = read(&format!("{HEAD}G01 Z-1. F100\nG15 H2\nG00 X0 Y0 Z10.\n"));
@@ -33,7 +33,7 @@ fn a_program_is_recognised_and_read() {
     placed.offsets.insert("G15H2".into(), [100.0, 0.0, 0.0]);
     let name = std::path::Path::new("part.min");
     let program = read_text(&format!("{HEAD}G01 Z-1. F100\nG15 H2\nG00 X0 Y0 Z10.\n"), name, &placed).unwrap();
-    assert_eq!(*tips(&program).last().unwrap(), [100.0, 0.0, 10.0]);
+    assert_eq!(*rounded_tips(&program).last().unwrap(), [100.0, 0.0, 10.0]);
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn cycles_return_to_the_level_of_g71() {
         let text = format!("{HEAD}G00 Z20.\nG71 Z30.\n{cycle} X1. Y2. Z-5. R2. F100 M53\nX9. Y2. M54\nG80\nM02\n");
         let program = read(&text);
         assert_eq!(
-            tips(&program)[2..],
+            rounded_tips(&program)[2..],
             [
                 [1.0, 2.0, 20.0],
                 [1.0, 2.0, 2.0],
@@ -59,7 +59,7 @@ fn cycles_return_to_the_level_of_g71() {
     let tapped = read(&format!(
         "{HEAD}S500 M03\nG71 Z30.\nG284 X1. Y2. Z-5. R2. F500 M53\nG80\nM02\n"
     ));
-    assert!(tips(&tapped).contains(&[1.0, 2.0, -5.0]));
+    assert!(rounded_tips(&tapped).contains(&[1.0, 2.0, -5.0]));
 }
 
 #[test]

@@ -4,13 +4,10 @@ use std::path::Path;
 
 use sweepsim_nc::{Controller, Program, ReadOptions, read_text};
 
+use crate::found::rounded_tips;
+
 fn read_as(name: &str, text: &str) -> Program {
     read_text(text, Path::new(name), &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    let round = |c: f64| (c * 1e9).round() / 1e9 + 0.0;
-    program.poses.iter().map(|pose| pose.pose.tip().map(round)).collect()
 }
 
 /// What is assumed: where first, what, and whether the verdict may depend on it.
@@ -34,7 +31,7 @@ fn moves_before_the_first_motion_code() {
         "a.nc",
         "G17 G40 G80 G90\nG53 Z0.\nT1 M6\nG0 X0 Y0\nG43 H1 Z5.\nG1 Z-1. F100.\n",
     );
-    assert_eq!(tips(&program), [[0.0, 0.0, 5.0], [0.0, 0.0, -1.0]]);
+    assert_eq!(rounded_tips(&program), [[0.0, 0.0, 5.0], [0.0, 0.0, -1.0]]);
     assert!(program.assumptions.is_empty(), "{:?}", program.assumptions);
     // TinyG and Centroid: coordinates alone are rapids.
     let program = read_as("a.nc", "G21 G90\nX0 Y0 Z5\nG1 Z-1 F100\n");
@@ -57,7 +54,7 @@ fn centres_in_coordinates() {
     // A quarter about (40, 40): no arc from its start has a radius.
     let text = "G0 X50 Y40 Z0\nG3 X40 Y50 I40 J40 F100\nG1 X0\n";
     let program = read_as("a.nc", text);
-    assert_eq!(tips(&program).last(), Some(&[0.0, 50.0, 0.0]));
+    assert_eq!(rounded_tips(&program).last(), Some(&[0.0, 50.0, 0.0]));
     let arc = program
         .poses
         .iter()
@@ -112,7 +109,7 @@ fn ways_home_in_steps() {
 fn a_cycle_without_its_plane() {
     let program = read_as("a.nc", "G0 X0 Y0 Z1\nG82 Z-2 F100\nX5\n");
     assert_eq!(said(&program), [(2, "the plane R of G82", true)]);
-    assert_eq!(tips(&program).iter().filter(|tip| tip[2] == -2.0).count(), 2);
+    assert_eq!(rounded_tips(&program).iter().filter(|tip| tip[2] == -2.0).count(), 2);
 }
 
 #[test]
@@ -140,11 +137,11 @@ fn subprograms_that_are_missing() {
         );
         // What comes before the program says where the tool is again is not made.
         assert!(
-            tips(&program).iter().all(|tip| tip[0] != 5.0),
+            rounded_tips(&program).iter().all(|tip| tip[0] != 5.0),
             "{name}: {:?}",
-            tips(&program)
+            rounded_tips(&program)
         );
-        assert_eq!(tips(&program).last(), Some(&[2.0, 1.0, 1.0]), "{name}");
+        assert_eq!(rounded_tips(&program).last(), Some(&[2.0, 1.0, 1.0]), "{name}");
     }
 }
 
@@ -173,7 +170,7 @@ fn cycles_that_are_not_known() {
         ),
     ] {
         let program = read_as(name, call);
-        assert_eq!(tips(&program).last(), Some(&[2.0, 0.0, 5.0]), "{name}");
+        assert_eq!(rounded_tips(&program).last(), Some(&[2.0, 0.0, 5.0]), "{name}");
         let [(_, found, true)] = said(&program)[..] else {
             panic!("{:?}", program.assumptions)
         };
@@ -224,7 +221,7 @@ fn klartext_as_it_is_written() {
         ("3 Q1 = SGN -5\n4 L X+Q1 Y+0 Z+0 FMAX\n", [-1.0, 0.0, 0.0]),
     ] {
         let program = read_as("a.h", &format!("{head}{text}"));
-        assert_eq!(tips(&program).last(), Some(&end), "{text}");
+        assert_eq!(rounded_tips(&program).last(), Some(&end), "{text}");
         // A parameter that nothing sets makes no stock.
         assert!(program.stock.is_none() && said(&program)[0] == (3, "the value of QR1", true));
     }
@@ -233,17 +230,17 @@ fn klartext_as_it_is_written() {
                 2 L X+3 Y+4 R0 FMAX M99\n3 L X+13 M99\n";
     let program = read_as("a.h", text);
     assert_eq!(
-        tips(&program)[..4],
+        rounded_tips(&program)[..4],
         [[3.0, 4.0, 1.0], [3.0, 4.0, -5.0], [3.0, 4.0, 1.0], [3.0, 4.0, 50.0]]
     );
-    assert!(tips(&program).contains(&[13.0, 4.0, -5.0]));
+    assert!(rounded_tips(&program).contains(&[13.0, 4.0, -5.0]));
     assert_eq!(said(&program), [(9, "the height from which a cycle begins", false)]);
 }
 
 #[test]
 fn siemens_values_that_only_the_control_knows() {
     let program = read_as("a.mpf", "G0 X0 Y0 Z=R1+5\nX=$P_UIFR[1,X,TR]+2\nG1 Z=_DEPTH F100\n");
-    assert_eq!(tips(&program).last(), Some(&[2.0, 0.0, 0.0]));
+    assert_eq!(rounded_tips(&program).last(), Some(&[2.0, 0.0, 0.0]));
     let [(2, system, true), (3, "the value of _DEPTH", true)] = said(&program)[..] else {
         panic!("{:?}", program.assumptions)
     };
@@ -257,13 +254,13 @@ fn okuma_with_variables_labels_and_calls() {
                 NA2 X=SQRT[16]+3\nNEND M02\nOSLOT\nG0 Y=PA\nG1 Z=-PB\nX5.\nRTS\n";
     let program = read_as("plate.min", text);
     assert_eq!(program.controller, Some(Controller::Okuma));
-    let depths: Vec<f64> = tips(&program)
+    let depths: Vec<f64> = rounded_tips(&program)
         .iter()
         .filter(|tip| tip[0] == 20.0)
         .map(|tip| tip[2])
         .collect();
     assert_eq!(depths, [-2.0, 5.0, -4.0, 5.0, -6.0, 5.0]);
-    let all = tips(&program);
+    let all = rounded_tips(&program);
     assert_eq!(
         all[all.len() - 3..],
         [[0.0, 10.0, -3.0], [5.0, 10.0, -3.0], [7.0, 10.0, -3.0]]
@@ -283,7 +280,10 @@ fn okuma_with_variables_labels_and_calls() {
 fn fixture_offsets_of_fadal() {
     let text = "%\nN1O77(PLATE)\nN2G0G90G40G80\nN3M6T1\nN4E1X1.Y2.S2000M3\nN5H1Z3.M8\nN6G1Z-1.F10.\nN7X5.\nN8G0Z3.\nN9E2 X0Y0\nN10Z9.\nN11E0X0Y0Z0\nM30\n";
     let program = read_as("a.nc", text);
-    let cut: Vec<[f64; 3]> = tips(&program).into_iter().filter(|tip| tip[2] == -1.0).collect();
+    let cut: Vec<[f64; 3]> = rounded_tips(&program)
+        .into_iter()
+        .filter(|tip| tip[2] == -1.0)
+        .collect();
     assert_eq!(cut, [[1.0, 2.0, -1.0], [5.0, 2.0, -1.0]]);
     let [(10, "the place of E2", false), (12, "the place of E0", false)] = said(&program)[..] else {
         panic!("{:?}", program.assumptions)
@@ -292,7 +292,11 @@ fn fixture_offsets_of_fadal() {
     let mut options = ReadOptions::default();
     options.offsets.insert("E2".to_owned(), [100.0, 0.0, 0.0]);
     let program = read_text(text, Path::new("a.nc"), &options).unwrap();
-    assert!(tips(&program).contains(&[100.0, 0.0, 3.0]), "{:?}", tips(&program));
+    assert!(
+        rounded_tips(&program).contains(&[100.0, 0.0, 3.0]),
+        "{:?}",
+        rounded_tips(&program)
+    );
     // What is extruded, and exponents, are errors as before.
     for wrong in [
         "G1 X5 E2 F100\n",
@@ -339,7 +343,7 @@ fn heads_of_other_controls() {
         ),
     ] {
         let program = read_as(name, &format!("{head}{cut}{end}"));
-        let all = tips(&program);
+        let all = rounded_tips(&program);
         assert!(
             all.windows(2).any(|pair| pair == [[0.0, 0.0, -1.0], [10.0, 0.0, -1.0]]),
             "{name}: {all:?}"

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use sweepsim_nc::{EventKind, Program, ReadOptions, Units, siemens};
 
+use crate::found::{near, tips};
+
 fn read(text: &str) -> Program {
     siemens::read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -18,21 +20,6 @@ fn error(text: &str) -> String {
     let mut strict = ReadOptions::default();
     strict.strict = true;
     siemens::read(text, &strict).unwrap_err().to_string()
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
-}
-
-#[track_caller]
-fn near(found: [f64; 3], expected: [f64; 3]) {
-    let off = found
-        .iter()
-        .zip(expected)
-        .map(|(a, b)| (a - b).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    assert!(off < 1e-9, "{found:?}, expected {expected:?}");
 }
 
 #[track_caller]

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use sweepsim_nc::{EventKind, FeedMode, NcError, Program, ReadOptions, Spindle, siemens};
 
+use crate::found;
+
 fn attempt(text: &str) -> Result<Program, NcError> {
     let called = |name: &str| (name == "HOLE").then(|| (PathBuf::from("HOLE.SPF"), "G91 Z-1\nZ1\nG90\nM17".to_owned()));
     siemens::read_with(text, &ReadOptions::default(), &called)
@@ -18,14 +20,12 @@ fn error(text: &str) -> String {
 }
 
 fn tips(text: &str) -> Vec<[f64; 3]> {
-    read(text).poses.iter().map(|pose| pose.pose.tip()).collect()
+    found::tips(&read(text))
 }
 
 #[track_caller]
 fn ends_at(text: &str, tip: [f64; 3]) {
-    let found = *tips(text).last().unwrap();
-    let off = found.iter().zip(tip).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(off < 1e-9, "{found:?}, expected {tip:?}\n{text}");
+    found::near(*tips(text).last().unwrap(), tip);
 }
 
 #[test]

@@ -8,6 +8,8 @@ mod tools;
 
 use sweepsim_nc::{Program, ReadOptions, apt};
 
+use crate::found::tips;
+
 fn read(text: &str) -> Program {
     apt::read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
@@ -21,10 +23,6 @@ fn exact(text: &str) -> Program {
 
 fn error(text: &str) -> String {
     apt::read(text, &ReadOptions::default()).expect_err(text).to_string()
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
 }
 
 fn notes(program: &Program) -> Vec<&str> {

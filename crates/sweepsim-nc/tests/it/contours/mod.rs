@@ -11,6 +11,7 @@ use sweepsim_motion::TipCourse;
 use sweepsim_nc::{Program, ReadOptions, ToolOffset, heidenhain, siemens};
 use sweepsim_props::*;
 
+use crate::found::{assert_near, tips};
 use crate::pieces::{Piece, distance_to_point, polygon, rounded_rectangle, samples, star};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,18 +37,6 @@ fn read(text: &str, klartext: bool, options: &ReadOptions) -> Program {
         siemens::read(text, options)
     };
     found.unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
-}
-
-#[track_caller]
-fn assert_near(found: &[[f64; 3]], expected: &[[f64; 3]]) {
-    assert_eq!(found.len(), expected.len(), "{found:?}");
-    for (a, b) in found.iter().zip(expected) {
-        assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{found:?}\n{expected:?}");
-    }
 }
 
 /// The program of a closed contour with a tangential entry of 10 mm, and a straight exit.

@@ -15,6 +15,8 @@ mod tilted_arcs;
 use sweepsim_nc::gcode::read;
 use sweepsim_nc::{Controller, Program, ReadOptions};
 
+use crate::found::{assert_near, tips};
+
 fn options(controller: Controller) -> ReadOptions {
     let mut options = ReadOptions::default();
     options.controller = Some(controller);
@@ -29,17 +31,4 @@ fn program_with(text: &str, options: &ReadOptions) -> Program {
 #[track_caller]
 fn program(text: &str) -> Program {
     program_with(text, &ReadOptions::default())
-}
-
-fn tips(program: &Program) -> Vec<[f64; 3]> {
-    program.poses.iter().map(|pose| pose.pose.tip()).collect()
-}
-
-/// Whether two lists of points agree to 1e-9 mm.
-#[track_caller]
-fn assert_near(found: &[[f64; 3]], expected: &[[f64; 3]]) {
-    assert_eq!(found.len(), expected.len(), "{found:?}");
-    for (a, b) in found.iter().zip(expected) {
-        assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{found:?}\n{expected:?}");
-    }
 }
