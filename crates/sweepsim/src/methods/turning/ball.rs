@@ -40,8 +40,9 @@ pub(super) struct BallLimits {
     bow: f64,
     /// Of `|a′|`.
     turn: f64,
-    /// How fast velocities turn.
+    /// How fast velocities turn, and a bound of `|b″|`.
     turning: f64,
+    acceleration: f64,
     /// `|G|` below the first, and the second over `h`, may be rounding.
     doubt: [f64; 2],
     /// As far as rounding may move a point.
@@ -51,7 +52,7 @@ pub(super) struct BallLimits {
 impl Ball {
     /// What is certain over a span; `None` if the centre's curve is curved too much there, seen in space or along the dexels.
     pub(super) fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<BallLimits> {
-        let bow = self.centre.abs() * bounds.bend;
+        let bow = bounds.bow(self.centre);
         let [a, b] = [from, to].map(|moment| self.at(moment).rate);
         // The slowest on the way: the velocity changes by `bow` per time.
         let least = |a: f64, b: f64| a.min(b) - 0.5 * bow * bounds.length;
@@ -63,17 +64,19 @@ impl Ball {
             bow,
             turn: bounds.rate,
             turning: bounds.turning(),
+            acceleration: bounds.acceleration,
             pad: 16.0 * slack,
             doubt: self.doubt(
                 [a.xy().norm().max(b.xy().norm()), a.z.abs().max(b.z.abs())].map(|speed| speed + bow * bounds.length),
+                bounds.noise,
                 slack,
             ),
         })
     }
 
     /// For a centre that moves as fast along the lines' plane and along the lines.
-    fn doubt(&self, [level, steep]: [f64; 2], slack: f64) -> [f64; 2] {
-        let rounding = f64::EPSILON * self.radius * (level + steep);
+    fn doubt(&self, [level, steep]: [f64; 2], noise: f64, slack: f64) -> [f64; 2] {
+        let rounding = self.radius * (f64::EPSILON * (level + steep) + noise * slack);
         [32.0 * (slack * level + rounding), 32.0 * slack * self.radius * steep]
     }
 }
@@ -108,7 +111,8 @@ impl Shell for Ball {
             bow: 0.0,
             turn: 0.0,
             turning: 0.0,
-            doubt: self.doubt(speed, slack),
+            acceleration: 0.0,
+            doubt: self.doubt(speed, 0.0, slack),
             pad: 16.0 * slack,
         };
         Some((centre, limits))
@@ -123,7 +127,7 @@ impl Shell for Ball {
         Centre {
             place: moment.tip + moment.axis * self.centre,
             rate: moment.velocity + moment.rate * self.centre,
-            bend: moment.bend * self.centre,
+            bend: moment.acceleration + moment.bend * self.centre,
             axis: moment.axis,
         }
     }
@@ -233,7 +237,8 @@ impl Shell for Ball {
         let speed = at.rate.x.abs() + at.rate.y.abs() + at.rate.z.abs() + self.radius * limits.turn;
         [
             speed,
-            (speed / meeting.half + limits.turning) * (1.0 + speed * speed / slope.abs()),
+            (speed / meeting.half + limits.turning + limits.acceleration / speed)
+                * (1.0 + speed * speed / slope.abs()),
         ]
     }
 

@@ -7,8 +7,8 @@
 //!
 //! ```text
 //! e = w − ζ a,  E′/2 = −⟨e, b′ + ζ a′⟩,
-//! E″/2 = S² + 2 τ⟨e, a′⟩ − ⟨e, a′⟩² − ζ⟨e, a″⟩  on the cylinder,
-//! E″/2 = |C′|² − ⟨e, C″⟩                        on the ball,
+//! E″/2 = S² + 2 τ⟨e, a′⟩ − ⟨e, a′⟩² − ⟨e, b″ + ζ a″⟩  on the cylinder,
+//! E″/2 = |C′|² − ⟨e, C″⟩                              on the ball,
 //! ```
 //!
 //! with the part `S` of `b′ + ζ a′` across the axis, `τ = ⟨b′, a⟩`, and the centre `C` of the ball. `E′` does not jump.
@@ -57,18 +57,20 @@ impl Poses {
     /// `None` where the tool is no solid of the kind that is counted here, or too steep.
     fn new(part: &PathPart) -> Option<Self> {
         let segment = &part.segment;
-        if !segment.is_arc() || !matches!(part.kind, PartKind::Joins(_) | PartKind::Other) {
+        if !matches!(part.kind, PartKind::Joins(_) | PartKind::Other) {
             return None;
         }
-        let [a, b] = segment.tips().map(|tip| tip[2]);
-        let (mut rise, mut lean) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0_f64);
+        let hull = |[low, high]: [f64; 2], at: f64| [low.min(at), high.max(at)];
+        let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+        let (points, weights) = segment.points();
+        let heights = points.iter().zip(weights).map(|(point, weight)| point.z / weight);
+        let (mut rise, mut lean) = (nothing, 0.0_f64);
         for (turn, weight) in segment.turns().iter().zip(segment.weights()) {
-            let up = turn[(2, 2)] / weight;
-            rise = [rise[0].min(up), rise[1].max(up)];
+            rise = hull(rise, turn[(2, 2)] / weight);
             lean = lean.max(turn[(2, 0)].hypot(turn[(2, 1)]) / weight);
         }
         (rise[0] > STEEP).then_some(Self {
-            tip: [a.min(b), a.max(b)],
+            tip: heights.fold(nothing, hull),
             rise,
             lean,
         })
@@ -197,7 +199,7 @@ impl LeaningCeiling {
     /// the span, at any time of it.
     fn heights(&self, ends: [&Moment; 2], bounds: &Bounds) -> [f64; 2] {
         let above = ends
-            .map(|end| (self.z - end.tip.z).abs())
+            .map(|end| (self.z - end.tip.z).abs() + bounds.sag(bounds.acceleration))
             .into_iter()
             .fold(0.0, f64::max);
         let far = if self.centre.is_finite() {
@@ -223,15 +225,16 @@ impl LeaningCeiling {
             let height = (self.z - end.tip.z) / end.axis.z;
             (end.velocity - end.axis * end.along + end.rate * height).norm()
         });
-        let drift = (bounds.speed + above * bounds.rate / rise) * bounds.rate / rise
+        let drift = bounds.acceleration
+            + (bounds.speed + above * bounds.rate / rise) * bounds.rate / rise
             + above / rise * bounds.bend
             + 2.0 * bounds.speed * bounds.rate;
         let across = least(middle, half * drift + reach * bounds.lean[1] / rise * bounds.rate);
-        let along = ends.map(|end| end.along.abs()).into_iter().fold(0.0, f64::max) + half * bounds.speed * bounds.rate;
+        let along = ends.map(|end| end.along.abs()).into_iter().fold(0.0, f64::max) + half * bounds.along();
         let turn = reach * bounds.rate;
-        let cylinder = across * across >= 1.01 * (2.0 * along * turn + turn * turn + most * reach * bounds.bend);
+        let cylinder = across * across >= 1.01 * (2.0 * along * turn + turn * turn + reach * bounds.bow(most));
         let ball = || {
-            let bow = self.centre.abs() * bounds.bend;
+            let bow = bounds.bow(self.centre);
             let slow = least(
                 ends.map(|end| (end.velocity + end.rate * self.centre).norm()),
                 half * bow,

@@ -4,7 +4,7 @@
 //! and across the horizontal part of the axis meets the cylinder at `N = (α, δ, 0)`, `α = ∓√(r² − δ²)`, `s ζ = q + k α`. With the velocity `V = b′ + ζ a′ − x a` of that point, `x = ⟨N, a′⟩`,
 //!
 //! ```text
-//! G = r g = ⟨N, V⟩,    z′ = G/(s α),    G′ = −V_φ²/r + x (x − 2 τ) + ζ ⟨N, a″⟩    where G = 0,
+//! G = r g = ⟨N, V⟩,    z′ = G/(s α),    G′ = −V_φ² + x (x − 2 τ) + ⟨N, b″ + ζ a″⟩    where G = 0,
 //! ```
 //!
 //! with `τ = ⟨b′, a⟩` and the part `V_φ` of `V` around the axis. There `|V_φ|` is `S`, the length of the part of `b′ + ζ a′` across the axis, and `|x| = r |⟨b′, a × a′⟩|/S`: so `G` falls wherever it is 0, except
@@ -47,10 +47,11 @@ pub(super) struct CylinderLimits {
     /// As far as rounding may move a point.
     pad: f64,
     /// Heights at which `G` may rise.
-    pivot: Option<[f64; 2]>,
-    /// How fast the components of `b′` and of `a′` change, and bounds of those of `a″`.
+    pub pivot: Option<[f64; 2]>,
+    /// How fast the components of `b′` and of `a′` change, and bounds of those of `b″` and `a″`.
     travel: f64,
     rate: f64,
+    acceleration: f64,
     bend: f64,
     /// How fast velocities turn.
     turning: f64,
@@ -75,7 +76,7 @@ impl Cylinder {
         let [swing, change] = bounds.swing;
         let far = self.ends[0].abs().max(self.ends[1].abs());
         let reach = self.radius + far * bounds.lean[1] + bounds.speed * bounds.length;
-        (swing * swing + change) * reach + 2.0 * swing * bounds.speed
+        (swing * swing + change) * reach + 2.0 * swing * bounds.speed + bounds.acceleration
     }
 
     /// The bound of the second derivative of the corners of its shadow, seen along the dexels.
@@ -84,13 +85,13 @@ impl Cylinder {
         // Of `u` and of `k u`, with the horizontal direction `u` of the axis.
         let turn = swing * swing + change;
         let tilt = bounds.bend + 2.0 * bounds.rate * swing + turn;
-        bounds.bend * self.reach() + self.radius * (tilt + turn)
+        bounds.bow(self.reach()) + self.radius * (tilt + turn)
     }
 
     /// `|G| |α|` below this may be rounding, for points that move across the axis by at most `across`, in all by `speed` and the turn at `rate`, with an axis that leans by `s`.
-    fn doubt(&self, [across, speed, rate]: [f64; 3], s: f64, slack: f64) -> f64 {
+    fn doubt(&self, [across, speed, rate, noise]: [f64; 4], s: f64, slack: f64) -> f64 {
         let r = self.radius;
-        32.0 * r * (slack * (across + rate * r / s) + f64::EPSILON * r * speed)
+        32.0 * r * (slack * (across + rate * r / s) + r * (f64::EPSILON * speed + noise * slack / s))
     }
 
     /// A bound of `|ζ|` where lines over the span meet the cylinder, however long it is.
@@ -106,17 +107,18 @@ impl Cylinder {
         }
         let height = self.height(bounds);
         let across = [from, to].map(Moment::across).into_iter().fold(0.0, f64::max);
-        let fastest = across + 0.5 * bounds.length * bounds.rate * bounds.speed + bounds.rate * height;
+        let fastest = across + 0.5 * bounds.length * bounds.along() + bounds.rate * height;
         // Along unit vectors that turn as fast as the axis and its horizontal direction do.
         let turn = bounds.swing[0] + bounds.rate;
         let bend = bounds.across + bounds.askew;
         Some(CylinderLimits {
             bow: self.bow(bounds),
-            doubt: self.doubt([fastest, bounds.speed, bounds.rate], bounds.lean[0], slack),
+            doubt: self.doubt([fastest, bounds.speed, bounds.rate, bounds.noise], bounds.lean[0], slack),
             pad: 16.0 * slack,
             pivot: self.pivot([from, to], bounds, height),
-            travel: turn * bounds.speed,
+            travel: bounds.acceleration + turn * bounds.speed,
             rate: bend + turn * bounds.rate,
+            acceleration: bounds.acceleration,
             bend,
             turning: bounds.turning(),
             lean: bounds.lean,
@@ -204,11 +206,12 @@ impl Shell for Cylinder {
         let across = moment.across() + rate * height;
         let limits = CylinderLimits {
             bow: 0.0,
-            doubt: self.doubt([across, moment.velocity.norm(), rate], s, slack),
+            doubt: self.doubt([across, moment.velocity.norm(), rate, 0.0], s, slack),
             pad: 16.0 * slack,
             pivot: None,
             travel: 0.0,
             rate: 0.0,
+            acceleration: 0.0,
             bend: 0.0,
             turning: 0.0,
             lean: [s; 2],
@@ -325,11 +328,14 @@ impl Shell for Cylinder {
         let (va, vb) = (at.travel[0] + at.rate[0] * zeta, at.travel[1] + at.rate[1] * zeta);
         let x = alpha * at.rate[0] + delta * at.rate[1];
         let y = alpha * at.bend[0] + delta * at.bend[1];
+        let accelerates = alpha * at.acceleration[0] + delta * at.acceleration[1];
         let rise = meeting.g[sheet] / (s * alpha);
         let around = alpha * vb - delta * va;
         // The point slides along the surface.
         let slides = -alpha * vb - delta * (rise * s - va);
-        let slope = slides * around / (self.radius * self.radius) + zeta * y + x * (rise * k - 2.0 * at.travel[2] + x);
+        let slope = slides * around / (self.radius * self.radius)
+            + (accelerates + zeta * y)
+            + x * (rise * k - 2.0 * at.travel[2] + x);
         [slope, rise]
     }
 
@@ -354,7 +360,9 @@ impl Shell for Cylinder {
         let speed = a.abs() + b.abs() + c.abs() + turn * (height + self.radius);
         [
             speed,
-            at.inverse * (speed / meeting.half + limits.turning) * (1.0 + speed * speed / slope.abs()),
+            at.inverse
+                * (speed / meeting.half + limits.turning + limits.acceleration / speed)
+                * (1.0 + speed * speed / slope.abs()),
         ]
     }
 

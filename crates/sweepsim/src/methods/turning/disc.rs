@@ -3,7 +3,7 @@
 //! A line meets its plane once, at `e` from the centre `c = b + ζ a`, at right angles to `a`. There
 //!
 //! ```text
-//! F = ⟨V, a⟩ = ⟨c′, a⟩ − ⟨e, a′⟩,    z′ = F/a_z,    F′ = 2⟨a′, b′⟩ + ζ |a′|² − ⟨e, a″⟩ − a′_z z′
+//! F = ⟨V, a⟩ = ⟨c′, a⟩ − ⟨e, a′⟩,    z′ = F/a_z,    F′ = ⟨b″, a⟩ + 2⟨a′, b′⟩ + ζ |a′|² − ⟨e, a″⟩ − a′_z z′
 //! ```
 //!
 //! along the line. If the axis travels faster along itself than the rim turns, `F` is never 0.
@@ -39,6 +39,8 @@ pub(super) struct Placed {
     /// `c′`, and its part along the axis.
     pub travel: Vector3<f64>,
     pub along: f64,
+    /// `c″`.
+    pub acceleration: Vector3<f64>,
     inverse: f64,
 }
 
@@ -53,6 +55,7 @@ impl Placed {
             bend: moment.bend,
             travel,
             along: moment.along,
+            acceleration: moment.acceleration + moment.bend * height,
             inverse: moment.axis.z.recip(),
         }
     }
@@ -68,6 +71,12 @@ impl Placed {
     #[inline]
     pub fn along(&self, arm: &Vector3<f64>) -> f64 {
         self.along - arm.dot(&self.rate)
+    }
+
+    /// `F′ + a′_z z′`. As `⟨a″, a⟩ = −|a′|²`, it is `⟨c″, a⟩ + 2⟨a′, c′⟩ − ⟨e, a″⟩`.
+    #[inline]
+    pub fn lift(&self, arm: &Vector3<f64>) -> f64 {
+        2.0 * self.rate.dot(&self.travel) + self.acceleration.dot(&self.axis) - arm.dot(&self.bend)
     }
 
     /// How fast `F` falls along x and y.
@@ -91,8 +100,9 @@ pub(super) struct DiscLimits {
     /// change.
     bow: f64,
     rates: [f64; 2],
-    /// How fast velocities turn.
+    /// How fast velocities turn, and a bound of `|b″|`.
     turning: f64,
+    acceleration: f64,
     pad: f64,
 }
 
@@ -100,16 +110,19 @@ impl Disc {
     /// Whether `F` is certain not to be 0 on the disc.
     fn keeps_its_sign(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> bool {
         let [a, b] = [from, to].map(|m| m.along);
-        let least = a.abs().min(b.abs()) - 0.5 * bounds.length * bounds.speed * bounds.rate;
+        let least = a.abs().min(b.abs()) - 0.5 * bounds.length * bounds.along();
         let turning = bounds.rate * self.radii[1] * (1.0 + 1e-9);
-        a * b > 0.0 && least > turning + 16.0 * (bounds.speed * f64::EPSILON + slack * bounds.rate)
+        a * b > 0.0 && least > turning + 16.0 * (bounds.speed * f64::EPSILON + slack * (bounds.rate + bounds.noise))
     }
 
     /// Whether `F` falls wherever it is 0, or rises wherever it is; `None` if that is not certain.
     fn falls_where_zero(&self, [from, to]: [&Moment; 2], bounds: &Bounds, least: f64) -> Option<bool> {
-        let slope = |m: &Moment| 2.0 * m.rate.dot(&m.velocity) + self.height * m.rate.norm_squared();
+        let slope = |m: &Moment| {
+            m.acceleration.dot(&m.axis) + 2.0 * m.rate.dot(&m.velocity) + self.height * m.rate.norm_squared()
+        };
         let [a, b] = [slope(from), slope(to)];
-        let changes = 2.0 * bounds.bend * (bounds.speed + self.height.abs() * bounds.rate);
+        let changes = 2.0 * bounds.bend * (bounds.speed + self.height.abs() * bounds.rate)
+            + (bounds.jerk + 3.0 * bounds.acceleration * bounds.rate);
         // For all lines over the disc at any time of the span, at all times.
         let way = (bounds.speed + self.height.abs() * bounds.rate) * bounds.length;
         let arm = (self.radii[1] + way) * (1.0 + least.recip());
@@ -140,7 +153,7 @@ impl Shell for Disc {
         let Some(falls) = self.falls_where_zero(ends, bounds, least).filter(|_| least >= STEEP) else {
             return Err(Verdict::Long);
         };
-        let bow = self.height.abs() * bounds.bend;
+        let bow = bounds.bow(self.height);
         // Of the horizontal part of the axis over the vertical one.
         let tilts = bounds.rate * (1.0 + least.recip()) / least;
         let limits = DiscLimits {
@@ -150,14 +163,16 @@ impl Shell for Disc {
             } else {
                 Falls::Never
             },
-            doubt: 16.0 * (slack * bounds.rate * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON),
+            doubt: 16.0
+                * (slack * (bounds.rate + bounds.noise) * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON),
             product: false,
             bow,
             rates: [
-                bounds.speed * bounds.rate,
+                bounds.along(),
                 bounds.bend * (1.0 + least.recip()) + bounds.rate * tilts,
             ],
             turning: bounds.turning(),
+            acceleration: bounds.acceleration,
             pad: slack,
         };
         let centres = ends.map(|moment| moment.tip + moment.axis * self.height);
@@ -180,6 +195,7 @@ impl Shell for Disc {
             bow: 0.0,
             rates: [0.0; 2],
             turning: 0.0,
+            acceleration: 0.0,
             pad: slack,
         };
         (placed.axis.z.abs() >= STEEP).then_some((placed, limits))
@@ -237,10 +253,7 @@ impl Shell for Disc {
     #[inline]
     fn slope(&self, at: &Placed, meeting: &Meeting, sheet: usize) -> [f64; 2] {
         let rise = self.up * meeting.g[sheet] * at.inverse;
-        let slope = 2.0 * at.rate.dot(&at.travel)
-            - self.height * at.rate.norm_squared()
-            - at.arm(meeting.place).dot(&at.bend)
-            - at.rate.z * rise;
+        let slope = at.lift(&at.arm(meeting.place)) - at.rate.z * rise;
         [self.up * slope, rise]
     }
 
@@ -253,7 +266,8 @@ impl Shell for Disc {
     fn pace(&self, limits: &DiscLimits, at: &Placed, meeting: &Meeting, slope: f64) -> [f64; 2] {
         let (radius, turn, tilt) = (at.arm(meeting.place).norm(), at.rate.norm(), 1.0 + at.inverse.abs());
         let speed = at.travel.norm() + self.radii[1].max(radius) * turn;
-        let pace = tilt * (limits.turning + turn) * (1.0 + turn * speed / slope.abs());
+        let turning = limits.turning + limits.acceleration / speed;
+        let pace = tilt * (turning + turn) * (1.0 + turn * speed / slope.abs());
         [4.0 * speed * tilt, pace]
     }
 

@@ -1,6 +1,6 @@
 //! The coordinates of a tool that leans: `α` across its axis in the vertical plane of it, `β` horizontally across both, `ζ` along it.
 
-use super::axis_motion::{AxisMotion, Moment};
+use super::axis_motion::{ArcMotion, AxisMotion, Moment};
 use crate::methods::sheets::intervals::{Range, add, scaled, sub};
 use nalgebra::Vector3;
 
@@ -16,7 +16,8 @@ pub(super) struct Lean {
     pub ahead: [f64; 2],
     /// `b′`.
     pub travel: [f64; 3],
-    /// `(α, β)` of `a′` and of `a″`.
+    /// `(α, β)` of `b″`, `a′` and `a″`.
+    pub acceleration: [f64; 2],
     pub rate: [f64; 2],
     pub bend: [f64; 2],
 }
@@ -38,14 +39,24 @@ impl Lean {
             inverse,
             ahead,
             travel: [alpha, beta, moment.velocity.dot(&moment.axis)],
+            acceleration: seen(&moment.acceleration),
             rate: seen(&moment.rate),
             bend: seen(&moment.bend),
         }
     }
 
-    /// At a time of a motion at which the axis leans. With the angular velocity `κ k/w` in these coordinates, `a′` and `a″` are products of its components.
+    /// At a time of a motion at which the axis leans.
     #[inline]
     pub fn during(motion: &AxisMotion, t: f64) -> Self {
+        match motion {
+            AxisMotion::Arc(arc) => Self::on_arc(arc, t),
+            AxisMotion::Curved(curved) => Self::new(&curved.at(t)),
+        }
+    }
+
+    /// With the angular velocity `κ k/w` in these coordinates, `a′` and `a″` are products of its components.
+    #[inline]
+    fn on_arc(motion: &ArcMotion, t: f64) -> Self {
         let (axis, spin, slope) = motion.axis(t);
         let [tip, velocity] = motion.tip(t);
         let s = (axis.x * axis.x + axis.y * axis.y).sqrt();
@@ -63,6 +74,7 @@ impl Lean {
             inverse,
             ahead: [ux, uy],
             travel: seen(&velocity),
+            acceleration: [0.0; 2],
             rate,
             bend: [own * rate[1] - slope * rate[0], -own * rate[0] - slope * rate[1]],
         }
@@ -114,7 +126,7 @@ mod tests {
             if other.tilt[0] <= 1e-3 {
                 return Ok(());
             }
-            let all = |lean: &Lean| [&lean.tip[..], &lean.tilt, &lean.ahead, &lean.travel, &lean.rate, &lean.bend].concat();
+            let all = |lean: &Lean| [&lean.tip[..], &lean.tilt, &lean.ahead, &lean.travel, &lean.acceleration, &lean.rate, &lean.bend].concat();
             for (a, b) in all(&own).into_iter().zip(all(&other)) {
                 prop_assert!((a - b).abs() < 1e-13 * other.inverse * (1.0 + b.abs()), "{own:?} {other:?}");
             }

@@ -51,7 +51,7 @@ struct Facing {
 impl Facing {
     fn new(rim: &Rim, [a, b]: [&Placed; 2], bounds: &Bounds, slack: f64) -> Self {
         let (length, height) = (bounds.length, rim.height.abs());
-        let bow = height * bounds.bend;
+        let bow = bounds.bow(height);
         let speed = bounds.speed + height * bounds.rate;
         let turning = rim.radius * bounds.rate;
         let along = [a.along.min(b.along), a.along.max(b.along)];
@@ -59,8 +59,8 @@ impl Facing {
             centre: [0, 1].map(|k| joined([a.centre[k]; 2], [b.centre[k]; 2], bounds.sag(bow))),
             lean: [0, 1].map(|k| divided(between(a.axis[k], b.axis[k], bounds.rate * length), bounds.rise)),
             travel: [0, 1, 2].map(|k| between(a.travel[k], b.travel[k], bow * length)),
-            along: wider(along, turning + 0.5 * length * bounds.speed * bounds.rate),
-            error: 16.0 * (slack / STEEP * (bounds.rate + speed / rim.radius) + f64::EPSILON * speed),
+            along: wider(along, turning + 0.5 * length * bounds.along()),
+            error: 16.0 * (slack / STEEP * (bounds.rate + speed / rim.radius + bounds.noise) + f64::EPSILON * speed),
         }
     }
 
@@ -87,7 +87,7 @@ pub(super) fn is_simple([radius, height]: [f64; 2], [from, to]: [&Moment; 2], bo
     }
     let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
     let far = height.abs();
-    let bow = far * bounds.bend;
+    let bow = bounds.bow(height);
     let [a, b] = [from, to].map(|m| (m.velocity + m.rate * height).xy().norm());
     let slow = a.min(b) - 0.5 * bow * bounds.length;
     let fast = bounds.speed + far * bounds.rate;
@@ -131,19 +131,22 @@ pub(super) struct RimSearch<'a, F> {
     speed: f64,
     rate: f64,
     turning: f64,
+    noise: f64,
 }
 
 impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
     pub fn new(rim: &'a Rim, motion: &'a AxisMotion, accuracy: Accuracy, source: F) -> Self {
         let bounds = motion.bounds([&motion.at(0.0), &motion.at(1.0)]);
+        let speed = bounds.speed + (rim.height.abs() + rim.radius) * bounds.rate;
         Self {
             rim,
             motion,
             accuracy,
             source,
-            speed: bounds.speed + (rim.height.abs() + rim.radius) * bounds.rate,
+            speed,
             rate: bounds.rate,
-            turning: bounds.turning(),
+            turning: bounds.turning() + bounds.acceleration / speed,
+            noise: bounds.noise,
         }
     }
 
@@ -162,7 +165,7 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
         let [a, b] = [from, to].map(|moment| Placed::new(moment, self.rim.height));
         let slack = self.accuracy.slack;
         let facing = Facing::new(self.rim, [&a, &b], bounds, slack);
-        let sag = bounds.sag(self.rim.height.abs() * bounds.bend);
+        let sag = bounds.sag(bounds.bow(self.rim.height));
         let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
         let reach = self.rim.radius + sag + slack;
         let wanted = |block: [Range; 2]| {
@@ -294,7 +297,7 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                     return None;
                 }
                 let error = 16.0 * (slack / STEEP + step.abs() * speed) * (self.rate + speed / self.rim.radius)
-                    + 16.0 * f64::EPSILON * speed;
+                    + 16.0 * (f64::EPSILON * speed + self.noise * slack / STEEP);
                 let [[n, m], [p, q]] = self.rim.normals;
                 let faces = [n * out + m * along, p * out + q * along];
                 // NaN is not certain.
@@ -309,18 +312,14 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
                 if !(turned <= TURNED && 2.0 * rest <= height_tolerance) {
                     return None;
                 }
-                let height = self.rim.height;
-                let lift = (2.0 * placed.rate.dot(&placed.travel)
-                    - height * placed.rate.norm_squared()
-                    - arm.dot(&placed.bend)
-                    - 2.0 * placed.rate.z * sample.rise)
-                    * inverse;
+                let lift = (placed.lift(arm) - 2.0 * placed.rate.z * sample.rise) * inverse;
                 let slides = Vector3::new(0.0, 0.0, sample.rise) - placed.travel;
-                let bend = slides.norm_squared() + arm.z * lift - height * arm.dot(&placed.bend);
+                let back = arm.dot(&placed.acceleration);
+                let bend = slides.norm_squared() + arm.z * lift - back;
                 let less = step * step * bend * inwards / sample.slope;
                 let (t, step) = (t - less, step - less);
                 // To first order, on both faces.
-                let out = out + step * (slides.dot(&placed.travel) + height * arm.dot(&placed.bend)) / self.rim.radius;
+                let out = out + step * (slides.dot(&placed.travel) + back) / self.rim.radius;
                 let along = along + step * (lift * placed.axis.z + placed.rate.z * sample.rise);
                 let (later, axis) = (arm + slides * step, placed.axis + placed.rate * step);
                 let later_faces = [n * out + m * along, p * out + q * along];

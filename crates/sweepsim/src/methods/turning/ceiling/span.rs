@@ -69,8 +69,8 @@ impl<'a> CeilingSpan<'a> {
         // The axis meets the plane at `b + a h/a_z`, on a way with this bound of its second derivative.
         let [above, _] = ceiling.heights([&moments[0], &moments[1]], &bounds);
         let speed = (bounds.speed + above * bounds.rate / rise) / rise;
-        let bend = (2.0 * speed * bounds.rate + above * bounds.bend / rise) / rise;
-        let bow = bend * bounds.lean[1] + 2.0 * speed * bounds.rate + above / rise * bounds.bend;
+        let bend = (bounds.acceleration + 2.0 * speed * bounds.rate + above * bounds.bend / rise) / rise;
+        let bow = bend * bounds.lean[1] + 2.0 * speed * bounds.rate + bounds.bow(above / rise);
         let middles = moments.map(|moment| {
             let share = (ceiling.z - moment.tip.z) / moment.axis.z;
             [0, 1].map(|k| moment.tip[k] + moment.axis[k] * share)

@@ -10,7 +10,7 @@ impl Cylinder {
     /// Heights at which `G` may rise. With `S` as above and `c = ⟨b′, a × a′⟩/|a′|`,
     ///
     /// ```text
-    /// −r G′ ≥ S² − r |c| (|ζ| |a″_e| + 2 |a′ τ|)/S − r² |a′|² c²/S² − r |ζ| |a″_f|,    S ≥ |c|,
+    /// −G′ ≥ S² − r |c| (|ζ| |a″_e| + 2 |a′ τ|)/S − r² |a′|² c²/S² − r (|ζ| |a″_f| + |b″|),    S ≥ |c|,
     /// ```
     ///
     /// where `a″_e` and `a″_f` are the parts of `a″` along `a′` and along `a × a′`. As `S` is at least the length of the part along `a′`, `|ζ| |a′|` exceeds it by no more than that part of `b′`.
@@ -30,7 +30,8 @@ impl Cylinder {
             [m.axis, e, m.axis.cross(&e)].map(|v| m.velocity.dot(&v))
         });
         // |e′| ≤ |a″|/|a′|; of it, `a × e` turns with the part across both.
-        let wander = [rate, bounds.bend / least, bounds.askew / least].map(|w| w * bounds.speed * half);
+        let wander = [rate, bounds.bend / least, bounds.askew / least]
+            .map(|w| (w * bounds.speed + bounds.acceleration) * half);
         let largest = |n: usize| seen[0][n].abs().max(seen[1][n].abs()) + wander[n];
         let (tau, side) = (largest(0), largest(2));
         let smallest = if seen[0][2] * seen[1][2] > 0.0 {
@@ -48,7 +49,7 @@ impl Cylinder {
         let enough = |s: f64| {
             let height = height.min((along + s) / least);
             let first = r * side * (height * bounds.across + 2.0 * rate * tau);
-            let third = r * height * bounds.askew;
+            let third = r * (height * bounds.askew + bounds.acceleration);
             s * s * s * s > 1.01 * (first * s + second + third * s * s)
         };
         // Where each of the terms, of which there are five, is less than a fifth.
@@ -57,7 +58,7 @@ impl Cylinder {
             (5.1 * r * side * (along / least * bounds.across + 2.0 * rate * tau)).cbrt()
                 + (5.1 * r * side * bounds.across / least).sqrt()
                 + (5.1 * second).sqrt().sqrt()
-                + (5.1 * r * bounds.askew * along / least).sqrt()
+                + (5.1 * r * (bounds.askew * along / least + bounds.acceleration)).sqrt()
                 + 5.1 * r * bounds.askew / least,
         );
         for _ in 0..16 {
@@ -105,6 +106,7 @@ impl Cylinder {
         let x = add(mul(alpha, rate(0)), mul(delta, rate(1)));
         let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
         let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
+        let rest = wider(rest, self.radius * limits.acceleration);
         let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
         // NaN is unknown.
         if slope[1] < 0.0 {

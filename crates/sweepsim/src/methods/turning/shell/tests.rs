@@ -1,12 +1,13 @@
 //! What is said to be certain of a line during a span, and slopes and gradients, against samples.
 
+use super::super::axis_motion::sample_paths;
 use super::super::cylinder::Cylinder;
 use super::super::disc::Disc;
 use super::*;
 use crate::algebra::certain::certainly_within;
 use crate::cutter::outline::Ball;
-use sweepsim_motion::{Pose, Segment};
-use sweepsim_props::test_runner::TestCaseResult;
+use std::cell::Cell;
+use sweepsim_props::test_runner::{TestCaseResult, TestRunner};
 use sweepsim_props::*;
 
 /// What is said of a line during a span, against samples of the span.
@@ -99,34 +100,64 @@ fn agrees<S: Shell>(
     Ok(())
 }
 
-proptest! {
-    #[test]
-    fn what_is_certain_is_so(tips in [[-4.0..4.0_f64, -4.0..4.0, -4.0..4.0], [-4.0..4.0, -4.0..4.0, -4.0..4.0]],
-        axes in [[-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], [-1.0..1.0, -1.0..1.0, 0.1..1.0]],
-        near in 0.01..1.0_f64, up in any::<bool>(), ends in [0.0..1.0_f64, 0.0..1.0], lines in collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
-        let axis = |n: usize| [0, 1, 2].map(|k| axes[0][k] + near * n as f64 * (axes[1][k] - axes[0][k]));
-        let [from, to] = [0, 1].map(|n| Pose::new(tips[n], axis(n)).unwrap());
-        let segment = &Segment::between(&from, &to)[0];
-        let Some(motion) = AxisMotion::new(segment) else { return Ok(()) };
-        let span = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        let moments = span.map(|t| motion.at(t));
-        let bounds = motion.bounds([&moments[0], &moments[1]]);
-        let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
-        let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
-        let disc = Disc { height: 1.0, radii: [0.0, 3.0], up: if up { 1.0 } else { -1.0 } };
-        let [from, to] = moments;
-        let accuracy = Accuracy { slack: 1e-14, height_tolerance: 1e-9 };
-        let on_disc = disc.along(&Span { from, to, bounds, last: true }, accuracy, 1.0);
-        for line in lines {
-            if let Some(limits) = ball.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&ball, &limits, &motion, span, (line, &[0, 1]))?;
-            }
-            if let Some(limits) = cylinder.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
-                agrees(&cylinder, &limits, &motion, span, (line, &[0, 1]))?;
-            }
-            if let Ok((limits, _)) = &on_disc {
-                agrees(&disc, limits, &motion, span, (line, &[usize::from(up)]))?;
-            }
+/// On how many lines a condition of a ball, a cylinder and a disc held along one span of a motion.
+fn tried(
+    motion: &AxisMotion,
+    span: [f64; 2],
+    up: bool,
+    lines: &[[f64; 2]],
+) -> Result<[usize; 3], TestCaseError> {
+    let moments = span.map(|t| motion.at(t));
+    let ends = [&moments[0], &moments[1]];
+    let bounds = motion.bounds(ends);
+    let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
+    let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
+    let disc = Disc { height: 1.0, radii: [0.0, 3.0], up: if up { 1.0 } else { -1.0 } };
+    let [from, to] = moments;
+    let accuracy = Accuracy { slack: 1e-14, height_tolerance: 1e-9 };
+    let on_disc = disc.along(&Span { from, to, bounds, last: true }, accuracy, 1.0);
+    let mut tried = [0; 3];
+    for line in lines {
+        if let Some(limits) = ball.limits(ends, &bounds, 1e-14) {
+            agrees(&ball, &limits, motion, span, (*line, &[0, 1]))?;
+            tried[0] += 1;
+        }
+        if let Some(limits) = cylinder.limits(ends, &bounds, 1e-14) {
+            agrees(&cylinder, &limits, motion, span, (*line, &[0, 1]))?;
+            tried[1] += usize::from(limits.pivot != Some([f64::NEG_INFINITY, f64::INFINITY]));
+        }
+        if let Ok((limits, _)) = &on_disc {
+            agrees(&disc, limits, motion, span, (*line, &[usize::from(up)]))?;
+            tried[2] += 1;
         }
     }
+    Ok(tried)
+}
+
+#[test]
+fn what_is_certain_is_so() {
+    let seen = [const { Cell::new([0; 3]) }; sample_paths::KINDS];
+    let tip = || [-4.0..4.0_f64, -4.0..4.0, -4.0..4.0];
+    let axis = || [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0];
+    let cases = (
+        (0..sample_paths::KINDS, any::<bool>()),
+        ([tip(), tip()], [axis(), axis()], 0.01..1.0_f64),
+        [0.0..1.0_f64, 0.0..1.0],
+        collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8),
+    );
+    let mut runner = TestRunner::new(ProptestConfig::with_cases(512));
+    let ran = runner.run(&cases, |((kind, up), (tips, axes, near), ends, lines)| {
+        let last = [0, 1, 2].map(|k| axes[0][k] + near * (axes[1][k] - axes[0][k]));
+        let path = sample_paths::path(kind, [(tips[0], axes[0]), (tips[1], last)]);
+        for segment in path.iter().flat_map(|path| path.segments(0, 10.0, 1e-2)) {
+            let Some(motion) = AxisMotion::new(&segment) else { continue };
+            let tried = tried(&motion, [ends[0].min(ends[1]), ends[0].max(ends[1])], up, &lines)?;
+            let all = seen[kind].get();
+            seen[kind].set([0, 1, 2].map(|k| all[k] + tried[k]));
+        }
+        Ok(())
+    });
+    ran.unwrap_or_else(|error| panic!("{error}"));
+    let seen = seen.map(Cell::into_inner);
+    assert!(seen.iter().flatten().all(|tried| *tried > 20), "{seen:?}");
 }
