@@ -81,24 +81,40 @@ impl Facing {
 
 /// Whether the plane of a circle with this radius and height is never steep, and its `E` convex for all lines over the
 /// disc at any time of the span.
-pub(super) fn is_simple([radius, height]: [f64; 2], [from, to]: [&Moment; 2], bounds: &Bounds) -> bool {
+///
+/// At such a time, `|f| = |e_z|` is no more than the lean of the axis times the radius. With `f′ = ⟨d, h′⟩ − ⟨c_h′, h⟩`
+/// and `f″ = ⟨d, h″⟩ − 2⟨c_h′, h′⟩ − ⟨c_h″, h⟩`.
+pub(super) fn is_simple([radius, height]: [f64; 2], ends: [&Moment; 2], bounds: &Bounds) -> bool {
     if !(bounds.rise[0] >= STEEP || bounds.rise[1] <= -STEEP) {
         return false;
     }
-    let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
-    let far = height.abs();
-    let bow = bounds.bow(height);
-    let [a, b] = [from, to].map(|m| (m.velocity + m.rate * height).xy().norm());
-    let slow = a.min(b) - 0.5 * bow * bounds.length;
-    let fast = bounds.speed + far * bounds.rate;
-    let reach = radius + fast * bounds.length;
-    // h = a_h/a_z
-    let lean = bounds.lean[1].abs().min(1.0) / least;
-    let tilt = bounds.rate * (1.0 + lean) / least;
-    let tilts = bounds.bend * (1.0 + lean) / least + 2.0 * bounds.rate * tilt / least;
-    let f = reach * lean;
-    let f_bend = bow * lean + 2.0 * fast * tilt + reach * tilts;
-    slow > 0.0 && slow * slow > 1.01 * (reach * bow + f * f_bend)
+    let (length, half, bow) = (bounds.length, 0.5 * bounds.length, bounds.bow(height));
+    let [a, b] = ends.map(|m| {
+        let travel = (m.velocity + m.rate * height).xy();
+        let lean = m.axis.xy() / m.axis.z;
+        let tilt = (m.rate.xy() - lean * m.rate.z) / m.axis.z;
+        let [own, across] = [&lean, &tilt].map(|of| travel.dot(of));
+        [travel.norm(), own, across, tilt.norm(), m.rate.z]
+    });
+    let most = |n: usize, change: f64| a[n].abs().max(b[n].abs()) + half * change;
+    let least = |n: usize, change: f64| {
+        let least = a[n].abs().min(b[n].abs()) - half * change;
+        if a[n] * b[n] > 0.0 { least.max(0.0) } else { 0.0 }
+    };
+    // h = a_h/a_z, and bounds of its derivatives: first by those of `a` alone, then from the ends.
+    let steepest = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+    let level = bounds.lean[1].min(1.0);
+    let lean = level / steepest;
+    let tilts = |tilt: f64, climb: f64| (bounds.bend * (1.0 + lean) + 2.0 * tilt * climb) / steepest;
+    let tilt = bounds.rate * (1.0 + lean) / steepest;
+    let tilt = tilt.min(most(3, tilts(tilt, bounds.rate)));
+    let tilts = tilts(tilt, most(4, bounds.bend));
+    let (slow, fast) = (least(0, bow), most(0, bow));
+    let reach = radius + fast * length;
+    let f = (reach * lean).min(radius * level + length * (fast * lean + reach * tilt));
+    let f_rate = (least(1, bow * lean + fast * tilt) - reach * tilt).max(0.0);
+    let f_bend = bow * lean + 2.0 * most(2, bow * tilt + fast * tilts) + reach * tilts;
+    slow > 0.0 && slow * slow + f_rate * f_rate > 1.01 * (reach * bow + f * f_bend)
 }
 
 /// About where `E` is 0 between two times at which its signs differ: at the zero of the cubic that has its values and
