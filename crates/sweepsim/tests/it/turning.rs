@@ -1,5 +1,8 @@
 //! Moves that turn, line by line, against charts: the same crossings from other equations, bounds and certificates.
 
+#[path = "../../src/methods/turning/axis_motion/sample_paths.rs"]
+mod sample_paths;
+
 use super::translations::{TOLERANCE, agree, cases, tools};
 use sweepsim::Statistics;
 use sweepsim::nalgebra::Vector3;
@@ -56,8 +59,34 @@ fn few_boxes() {
     }
 }
 
+/// So it is whatever the tip and the axis do.
+#[test]
+fn few_boxes_on_every_kind() {
+    for kind in 0..sample_paths::KINDS {
+        let ends = [
+            ([-6.0, -2.0, 0.5], [0.5, 0.3, 1.0]),
+            ([-1.0, 3.0, 1.0], [0.3, 0.6, 1.0]),
+        ];
+        let path = sample_paths::path(kind, ends).expect("a path");
+        for number in [0, 1] {
+            let [own, other] = agree_along(number, &path, &grid(40)).expect("the same dexels");
+            assert!(4 * own.boxes <= other.boxes, "{kind}: {own:?} {other:?}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// Moves of every kind, with large turns and small ones.
+    #[test]
+    fn every_kind(number in 0..13usize, kind in 1..sample_paths::KINDS, tips in [tip(6.0), tip(6.0)], axes in [axis(), axis()], small in any::<bool>()) {
+        let share = if small { 0.08 } else { 1.0 };
+        let mixed = |[from, to]: [[f64; 3]; 2]| [0, 1, 2].map(|k| from[k] + share * (to[k] - from[k]));
+        let path = sample_paths::path(kind, [(tips[0], axes[0]), (mixed(tips), mixed(axes))]);
+        let path = path.ok_or_else(|| TestCaseError::reject("no path"))?;
+        agree_along(number, &path, &grid(25))?;
+    }
 
     /// Long moves with large turns, upright on the way or not.
     #[test]

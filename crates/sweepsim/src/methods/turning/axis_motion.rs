@@ -287,7 +287,10 @@ mod tests {
                 (moment.acceleration, (high.velocity - low.velocity) / (2.0 * h)),
             ];
             for (rate, difference) in rates {
-                prop_assert!((rate - difference).norm() < 1e-7 * (1.0 + rate.norm()), "{rate} {difference}");
+                prop_assert!(
+                    (rate - difference).norm() < 1e-7 * (1.0 + rate.norm()),
+                    "{rate} {difference}"
+                );
             }
             let jerk = (high.acceleration - low.acceleration) / (2.0 * h);
             prop_assert!(jerk.norm() <= bounds.jerk * (1.0 + 1e-6) + 1e-7, "{jerk} {bounds:?}");
@@ -305,7 +308,10 @@ mod tests {
                 let swing = |m: &Moment| (m.axis.x * m.rate.y - m.axis.y * m.rate.x) / m.lean().powi(2);
                 prop_assert!(swing(&moment).abs() <= bounds.swing[0] * (1.0 + 1e-12) + 1e-12);
                 let change = (swing(&high) - swing(&low)) / (2.0 * h);
-                prop_assert!(change.abs() <= bounds.swing[1] * (1.0 + 1e-6) + 1e-6, "{change} {bounds:?}");
+                prop_assert!(
+                    change.abs() <= bounds.swing[1] * (1.0 + 1e-6) + 1e-6,
+                    "{change} {bounds:?}"
+                );
             }
         }
         Ok(())
@@ -327,7 +333,9 @@ mod tests {
             let to = [1.0 + 3.0 * near, -2.0 + 3.0 * near, 0.5 - 0.5 * near];
             let path = sample_paths::path(kind, [([1.0, -2.0, 0.5], axes[0]), (to, last)]);
             for segment in path.iter().flat_map(|path| path.segments(0, 10.0, 1e-2)) {
-                let Some(motion) = AxisMotion::new(&segment) else { continue };
+                let Some(motion) = AxisMotion::new(&segment) else {
+                    continue;
+                };
                 bounds_hold(&motion, [ends[0].min(ends[1]), ends[0].max(ends[1])])?;
                 tried[kind].set(tried[kind].get() + 1);
             }

@@ -237,8 +237,7 @@ impl Shell for Ball {
         let speed = at.rate.x.abs() + at.rate.y.abs() + at.rate.z.abs() + self.radius * limits.turn;
         [
             speed,
-            (speed / meeting.half + limits.turning + limits.acceleration / speed)
-                * (1.0 + speed * speed / slope.abs()),
+            (speed / meeting.half + limits.turning + limits.acceleration / speed) * (1.0 + speed * speed / slope.abs()),
         ]
     }
 

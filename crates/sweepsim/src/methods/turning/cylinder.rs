@@ -113,7 +113,11 @@ impl Cylinder {
         let bend = bounds.across + bounds.askew;
         Some(CylinderLimits {
             bow: self.bow(bounds),
-            doubt: self.doubt([fastest, bounds.speed, bounds.rate, bounds.noise], bounds.lean[0], slack),
+            doubt: self.doubt(
+                [fastest, bounds.speed, bounds.rate, bounds.noise],
+                bounds.lean[0],
+                slack,
+            ),
             pad: 16.0 * slack,
             pivot: self.pivot([from, to], bounds, height),
             travel: bounds.acceleration + turn * bounds.speed,

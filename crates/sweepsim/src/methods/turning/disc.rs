@@ -163,8 +163,7 @@ impl Shell for Disc {
             } else {
                 Falls::Never
             },
-            doubt: 16.0
-                * (slack * (bounds.rate + bounds.noise) * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON),
+            doubt: 16.0 * (slack * (bounds.rate + bounds.noise) * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON),
             product: false,
             bow,
             rates: [

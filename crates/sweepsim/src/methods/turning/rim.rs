@@ -361,3 +361,6 @@ impl<'a, F: Fn(f64) -> Source> RimSearch<'a, F> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,18 +67,15 @@ pub fn path(kind: usize, [from, to]: [(Place, Place); 2]) -> Option<Path> {
         // Quaternions and a rational tip.
         _ => {
             let knots = |degree| KnotVector::new(degree, [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat());
-            let turns = [[1.0, 0.4 * from.1[0], 0.4 * from.1[1], 0.0], [
-                1.0,
-                0.4 * to.1[0],
-                0.4 * to.1[1],
-                0.3 * to.1[2],
-            ]];
+            let turns = [
+                [1.0, 0.4 * from.1[0], 0.4 * from.1[1], 0.0],
+                [1.0, 0.4 * to.1[0], 0.4 * to.1[1], 0.1 * to.1[2]],
+            ];
             let turn = BSpline::new(vec![knots(1).ok()?], 4, turns.concat()).ok()?;
-            let part = |share: f64, off: f64| {
-                [0, 1, 2].map(|k| from.0[k] + share * (to.0[k] - from.0[k]) + off * from.1[k])
-            };
-            let tips = [from.0, part(0.3, 0.3), part(0.6, -0.2), to.0];
-            let tip = RationalSpline::new(vec![knots(3).ok()?], 3, &tips.concat(), &[1.0, 0.9, 1.2, 1.1]).ok()?;
+            let part =
+                |share: f64, off: f64| [0, 1, 2].map(|k| from.0[k] + share * (to.0[k] - from.0[k]) + off * from.1[k]);
+            let tips = [from.0, part(0.3, 0.1), part(0.7, -0.1), to.0];
+            let tip = RationalSpline::new(vec![knots(3).ok()?], 3, &tips.concat(), &[1.0, 0.95, 1.1, 1.05]).ok()?;
             SplineMotion::from_quaternions(&turn, &tip).ok().map(Path::along)
         }
     }

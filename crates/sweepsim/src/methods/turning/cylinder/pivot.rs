@@ -30,8 +30,8 @@ impl Cylinder {
             [m.axis, e, m.axis.cross(&e)].map(|v| m.velocity.dot(&v))
         });
         // |e′| ≤ |a″|/|a′|; of it, `a × e` turns with the part across both.
-        let wander = [rate, bounds.bend / least, bounds.askew / least]
-            .map(|w| (w * bounds.speed + bounds.acceleration) * half);
+        let wander =
+            [rate, bounds.bend / least, bounds.askew / least].map(|w| (w * bounds.speed + bounds.acceleration) * half);
         let largest = |n: usize| seen[0][n].abs().max(seen[1][n].abs()) + wander[n];
         let (tau, side) = (largest(0), largest(2));
         let smallest = if seen[0][2] * seen[1][2] > 0.0 {

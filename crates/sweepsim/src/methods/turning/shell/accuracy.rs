@@ -3,9 +3,10 @@
 use crate::cutter::outline::Outline;
 use crate::methods::harvest::{Collector, Harvest};
 use crate::methods::lattice::Lattice;
+use crate::methods::turning::axis_motion::sample_paths;
 use crate::methods::turning::{Accuracy, Searching, envelope};
 use sweepsim_dexel::{Crossing, Grid, Source};
-use sweepsim_motion::{Pose, Segment, Tool};
+use sweepsim_motion::{Segment, Tool};
 
 /// The crossings of a move, and the numbers of the lines that are open or left.
 fn found(
@@ -59,28 +60,20 @@ fn one_step_is_enough() {
     ];
     let grid = Grid::new([-15.0, -15.0], [15.0, 15.0], [60; 2]).unwrap();
     let lines = Lattice::all(&grid, [1.3e-4, 0.7e-4]);
-    let (mut compared, mut worst) = ([0; 3], [0.0_f64; 2]);
-    for number in 0..90 {
+    let (mut compared, mut worst) = ([[0; 3]; sample_paths::KINDS], [0.0_f64; 2]);
+    for number in 0..108 {
         let at = |n: usize| (f64::from(number) * 0.7 + n as f64 * 1.9).sin();
         // From moves across the grid to short ones.
         let size = [1.0, 0.2, 0.03][(number % 3) as usize];
         let tip = [4.0 * at(0), 4.0 * at(1), at(2)];
         let axis = [0.8 * at(3), 0.8 * at(4), 1.0];
-        let poses = [
-            Pose::new(tip, axis).unwrap(),
-            Pose::new(
-                [
-                    tip[0] + 9.0 * size * at(5),
-                    tip[1] + 9.0 * size * at(6),
-                    tip[2] + 3.0 * size * at(7),
-                ],
-                [axis[0] + 0.7 * size * at(8), axis[1] + 0.7 * size * at(9), 1.0],
-            )
-            .unwrap(),
-        ];
+        let last = [0, 1, 2].map(|k| tip[k] + [9.0, 9.0, 3.0][k] * size * at(5 + k));
+        let turned = [axis[0] + 0.7 * size * at(8), axis[1] + 0.7 * size * at(9), 1.0];
+        let kind = (number / 9) as usize % sample_paths::KINDS;
+        let path = sample_paths::path(kind, [(tip, axis), (last, turned)]).unwrap();
         let tool = &tools[(number / 3 % 3) as usize];
         let outline = Outline::new(tool).unwrap();
-        for segment in Segment::between(&poses[0], &poses[1]) {
+        for segment in path.segments(0, 20.0, 1e-2) {
             let [own, other] = [height_tolerance, 1e-14]
                 .map(|height_tolerance| found(tool, &outline, &segment, &lines, height_tolerance));
             let skipped = |line: u32| own.1.contains(&line) || other.1.contains(&line);
@@ -95,9 +88,9 @@ fn one_step_is_enough() {
                 worst[0] = worst[0].max((a.z - b.z).abs());
                 worst[1] = turned.into_iter().fold(worst[1], f64::max);
             }
-            compared[(number % 3) as usize] += own.len();
+            compared[kind][(number % 3) as usize] += own.len();
         }
     }
     assert!(worst[0] <= height_tolerance && worst[1] <= 1e-4, "{worst:?}");
-    assert!(compared.into_iter().all(|count| count > 500), "{compared:?}");
+    assert!(compared.iter().flatten().all(|count| *count > 50), "{compared:?}");
 }

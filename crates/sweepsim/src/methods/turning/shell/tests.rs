@@ -101,21 +101,39 @@ fn agrees<S: Shell>(
 }
 
 /// On how many lines a condition of a ball, a cylinder and a disc held along one span of a motion.
-fn tried(
-    motion: &AxisMotion,
-    span: [f64; 2],
-    up: bool,
-    lines: &[[f64; 2]],
-) -> Result<[usize; 3], TestCaseError> {
+fn tried(motion: &AxisMotion, span: [f64; 2], up: bool, lines: &[[f64; 2]]) -> Result<[usize; 3], TestCaseError> {
     let moments = span.map(|t| motion.at(t));
     let ends = [&moments[0], &moments[1]];
     let bounds = motion.bounds(ends);
-    let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
-    let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
-    let disc = Disc { height: 1.0, radii: [0.0, 3.0], up: if up { 1.0 } else { -1.0 } };
+    let ball = Ball {
+        centre: 2.0,
+        radius: 2.0,
+        ends: [f64::NEG_INFINITY, 0.3],
+    };
+    let cylinder = Cylinder {
+        radius: 1.5,
+        ends: [1.0, 9.0],
+    };
+    let disc = Disc {
+        height: 1.0,
+        radii: [0.0, 0.5],
+        up: if up { 1.0 } else { -1.0 },
+    };
     let [from, to] = moments;
-    let accuracy = Accuracy { slack: 1e-14, height_tolerance: 1e-9 };
-    let on_disc = disc.along(&Span { from, to, bounds, last: true }, accuracy, 1.0);
+    let accuracy = Accuracy {
+        slack: 1e-14,
+        height_tolerance: 1e-9,
+    };
+    let on_disc = disc.along(
+        &Span {
+            from,
+            to,
+            bounds,
+            last: true,
+        },
+        accuracy,
+        1.0,
+    );
     let mut tried = [0; 3];
     for line in lines {
         if let Some(limits) = ball.limits(ends, &bounds, 1e-14) {
@@ -142,16 +160,18 @@ fn what_is_certain_is_so() {
     let cases = (
         (0..sample_paths::KINDS, any::<bool>()),
         ([tip(), tip()], [axis(), axis()], 0.01..1.0_f64),
-        [0.0..1.0_f64, 0.0..1.0],
+        [0.0..1.0_f64, 0.01..0.6],
         collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8),
     );
-    let mut runner = TestRunner::new(ProptestConfig::with_cases(512));
-    let ran = runner.run(&cases, |((kind, up), (tips, axes, near), ends, lines)| {
+    let mut runner = TestRunner::new(ProptestConfig::with_cases(4096));
+    let ran = runner.run(&cases, |((kind, up), (tips, axes, near), [from, length], lines)| {
         let last = [0, 1, 2].map(|k| axes[0][k] + near * (axes[1][k] - axes[0][k]));
         let path = sample_paths::path(kind, [(tips[0], axes[0]), (tips[1], last)]);
         for segment in path.iter().flat_map(|path| path.segments(0, 10.0, 1e-2)) {
-            let Some(motion) = AxisMotion::new(&segment) else { continue };
-            let tried = tried(&motion, [ends[0].min(ends[1]), ends[0].max(ends[1])], up, &lines)?;
+            let Some(motion) = AxisMotion::new(&segment) else {
+                continue;
+            };
+            let tried = tried(&motion, [from, (from + length).min(1.0)], up, &lines)?;
             let all = seen[kind].get();
             seen[kind].set([0, 1, 2].map(|k| all[k] + tried[k]));
         }
@@ -159,5 +179,5 @@ fn what_is_certain_is_so() {
     });
     ran.unwrap_or_else(|error| panic!("{error}"));
     let seen = seen.map(Cell::into_inner);
-    assert!(seen.iter().flatten().all(|tried| *tried > 20), "{seen:?}");
+    assert!(seen.iter().flatten().all(|tried| *tried > 0), "{seen:?}");
 }
