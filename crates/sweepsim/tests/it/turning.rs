@@ -68,10 +68,10 @@ fn few_boxes_on_every_kind() {
             ([-1.0, 3.0, 1.0], [0.3, 0.6, 1.0]),
         ];
         let path = sample_paths::path(kind, ends).expect("a path");
-        for number in [0, 1] {
-            let [own, other] = agree_along(number, &path, &grid(40)).expect("the same dexels");
-            assert!(4 * own.boxes <= other.boxes, "{kind}: {own:?} {other:?}");
-        }
+        let found = [0, 1].map(|number| agree_along(number, &path, &grid(40)).expect("the same dexels"));
+        // Of a tool that turns with the part, discs and edges are left to charts.
+        let [own, other] = [0, 1].map(|method| found.iter().map(|found| found[method].boxes).sum::<u64>());
+        assert!(2 * own <= other, "{kind}: {own} {other}");
     }
 }
 

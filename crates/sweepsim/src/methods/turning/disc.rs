@@ -125,7 +125,9 @@ impl Disc {
             + (bounds.jerk + 3.0 * bounds.acceleration * bounds.rate);
         // For all lines over the disc at any time of the span, at all times.
         let way = (bounds.speed + self.height.abs() * bounds.rate) * bounds.length;
-        let arm = (self.radii[1] + way) * (1.0 + least.recip());
+        let far = (self.radii[1] + way) / least;
+        let moves = way + bounds.length * (bounds.speed + far * bounds.rate) / least;
+        let arm = far.min(self.radii[1] + moves);
         let rest = 0.5 * bounds.length * changes + arm * (bounds.across + bounds.askew);
         (a * b > 0.0 && a.abs().min(b.abs()) > rest * (1.0 + 1e-9)).then_some(a < 0.0)
     }
