@@ -64,12 +64,11 @@ fn few_boxes() {
 fn few_boxes_on_every_kind() {
     for kind in 0..sample_paths::KINDS {
         let ends = [
-            ([-6.0, -2.0, 0.5], [0.5, 0.3, 1.0]),
-            ([-1.0, 3.0, 1.0], [0.3, 0.6, 1.0]),
+            ([-9.0, -4.0, 0.5], [0.5, 0.3, 1.0]),
+            ([-4.0, 1.0, 1.0], [0.3, 0.6, 1.0]),
         ];
         let path = sample_paths::path(kind, ends).expect("a path");
         let found = [0, 1].map(|number| agree_along(number, &path, &grid(40)).expect("the same dexels"));
-        // Of a tool that turns with the part, discs and edges are left to charts.
         let [own, other] = [0, 1].map(|method| found.iter().map(|found| found[method].boxes).sum::<u64>());
         assert!(2 * own <= other, "{kind}: {own} {other}");
     }
