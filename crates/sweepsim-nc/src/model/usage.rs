@@ -132,8 +132,13 @@ fn joined([low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
 fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let ends = joined([a; 2], [b; 2]);
-    let TipCourse::Arc(arc) = to.way().course else {
-        return ends;
+    let arc = match to.way().course {
+        TipCourse::Straight => return ends,
+        TipCourse::Arc(arc) => arc,
+        course @ TipCourse::Carried(arc) => {
+            let samples = 64 * (arc.angle().abs() / TAU).ceil() as usize;
+            return sampled_extent(samples, |time| course.tip([a, b], time));
+        }
     };
     let (n, angle) = (arc.normal(), arc.angle());
     let dot = |v: [f64; 3]| v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
@@ -160,6 +165,21 @@ fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
         }
     }
     all
+}
+
+/// The box around a smooth course, of whose wiggles none is shorter than some samples: of each coordinate, the parabola through three of them.
+fn sampled_extent(samples: usize, at: impl Fn(f64) -> [f64; 3]) -> [[f64; 3]; 2] {
+    let points: Vec<[f64; 3]> = (0..=samples).map(|k| at(k as f64 / samples as f64)).collect();
+    let ends = points.iter().fold([points[0]; 2], |all, point| joined(all, [*point; 2]));
+    points.windows(3).fold(ends, |all, three| {
+        let extreme = |k: usize| {
+            let [p, q, r] = [three[0][k], three[1][k], three[2][k]];
+            let (slope, bend) = (0.5 * (r - p), p - 2.0 * q + r);
+            // Its extreme, if that is between the first and the last.
+            if slope.abs() < bend.abs() { q - 0.5 * slope * slope / bend } else { q }
+        };
+        joined(all, [[0, 1, 2].map(extreme); 2])
+    })
 }
 
 impl ToolUsage {
@@ -195,20 +215,7 @@ impl ToolUsage {
 
 /// The length of the tip's way.
 pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
-    let (a, b) = (from.pose.tip(), to.pose.tip());
-    let chord = [0, 1, 2].map(|k| b[k] - a[k]);
-    match to.way().course {
-        TipCourse::Straight => chord[0].hypot(chord[1]).hypot(chord[2]),
-        TipCourse::Arc(arc) => {
-            let (centre, normal) = (arc.centre(), arc.normal());
-            let dot = |v: [f64; 3]| v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
-            let radial = [0, 1, 2].map(|k| a[k] - centre[k]);
-            let along = dot(radial);
-            let across = [0, 1, 2].map(|k| radial[k] - along * normal[k]);
-            let radius = across[0].hypot(across[1]).hypot(across[2]);
-            (radius * arc.angle()).hypot(dot(chord))
-        }
-    }
+    to.way().course.length([from.pose.tip(), to.pose.tip()])
 }
 
 #[cfg(test)]
