@@ -284,7 +284,11 @@ impl Tip {
                     _ => product(&weights, &times, |w, time| way * (w * time)),
                 };
                 let circle = product(&[1.0; 4], &circle, |one, point| point * *one);
-                let points = circle.iter().zip(&added).map(|(circle, added)| circle + added).collect();
+                let points = circle
+                    .iter()
+                    .zip(&added)
+                    .map(|(circle, added)| circle + added)
+                    .collect();
                 (points, product(&weights, &[1.0; 4], |w, one| w * one))
             }
         }

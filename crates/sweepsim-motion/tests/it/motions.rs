@@ -328,7 +328,11 @@ fn a_carried_tip_goes_along_a_spiral() {
     let slope = (b - a) / std::f64::consts::TAU;
     let whole = |u: f64| 0.5 * slope * (u * u.hypot(1.0) + u.asinh());
     let length = whole(b / slope) - whole(a / slope);
-    assert!((path.tip_length(0) / length - 1.0).abs() < 1e-6, "{} {length}", path.tip_length(0));
+    assert!(
+        (path.tip_length(0) / length - 1.0).abs() < 1e-6,
+        "{} {length}",
+        path.tip_length(0)
+    );
     assert!(path.size() >= 15.0 && path.size() < 80.0, "{}", path.size());
 }
 

@@ -331,7 +331,11 @@ impl Driver {
             let parts = self.division(&last, &end, coordinates)?;
             let mut before = last.abc;
             for part in 1..=parts {
-                let at = if part == parts { end } else { last.towards(&end, part as f64 / parts as f64) };
+                let at = if part == parts {
+                    end
+                } else {
+                    last.towards(&end, part as f64 / parts as f64)
+                };
                 course.push((at, Move::straight(self.turning(before, at.abc, coordinates)?)));
                 before = at.abc;
             }
@@ -341,12 +345,7 @@ impl Driver {
     }
 
     /// The move of a tool that goes straight while one axis of the table turns it: one of which no point is a chord.
-    fn carried(
-        &mut self,
-        from: [f64; 3],
-        to: [f64; 3],
-        coordinates: Coordinates,
-    ) -> Result<Option<Move>, NcProblem> {
+    fn carried(&mut self, from: [f64; 3], to: [f64; 3], coordinates: Coordinates) -> Result<Option<Move>, NcProblem> {
         let arc = match (coordinates, &self.kinematics) {
             (Coordinates::Axes, Some(kinematics)) if self.carries => kinematics.carries(from, to),
             _ => None,

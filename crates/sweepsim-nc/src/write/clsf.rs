@@ -118,10 +118,7 @@ impl<W: Write> Output<'_, W> {
         }
         if let (true, Some(last), TipCourse::Arc(arc)) = (pose.joined, last, course) {
             self.arc(&arc, last, pose)?;
-        } else if pose.joined
-            && !matches!(pose.way().turning, Turning::Slerp)
-            && course == TipCourse::Straight
-        {
+        } else if pose.joined && !matches!(pose.way().turning, Turning::Slerp) && course == TipCourse::Straight {
             self.lose("how the tool axis turns between two points".to_owned());
         }
         let (tip, axis) = (pose.pose.tip(), pose.pose.axis());

@@ -59,7 +59,10 @@ fn carried(name: &str, from: [f64; 2], to: [f64; 2], [pivot, way]: [[f64; 3]; 2]
     let turned = |angles: [f64; 2], point: Vector3<f64>| table.orientation(angles) * point + Vector3::from(pivot);
     let start = Vector3::new(0.0, 1.5, 1.0);
     let tips = [turned(from, start), turned(to, start + Vector3::from(way))];
-    let poses = vec![pose(tips[0].into(), table.axis(from)), pose(tips[1].into(), table.axis(to))];
+    let poses = vec![
+        pose(tips[0].into(), table.axis(from)),
+        pose(tips[1].into(), table.axis(to)),
+    ];
     let angle = [0, 1].map(|k| from[k] - to[k]).iter().sum::<f64>().to_radians();
     let course = TipCourse::Carried(TipArc::new(pivot, axis, angle).expect("an arc"));
     let turning = Turning::Rotary { table, from, to };
@@ -297,8 +300,18 @@ pub fn motions() -> Vec<Named> {
             }],
         ),
         // A fourth axis under a tool that goes straight: along it, across it and down.
-        carried("a table about x", [0.0; 2], [70.0, 0.0], [[1.0, 0.0, 0.0], [0.5, -1.5, 0.5]]),
-        carried("a table about z, tilted", [-35.0, 20.0], [-35.0, 150.0], [o, [0.4, 0.6, -0.3]]),
+        carried(
+            "a table about x",
+            [0.0; 2],
+            [70.0, 0.0],
+            [[1.0, 0.0, 0.0], [0.5, -1.5, 0.5]],
+        ),
+        carried(
+            "a table about z, tilted",
+            [-35.0, 20.0],
+            [-35.0, 150.0],
+            [o, [0.4, 0.6, -0.3]],
+        ),
         bezier(
             "spline motion, quadratic",
             &[[1.0, 0.0, 0.0, 0.0], [0.9, 0.3, -0.1, 0.1], [0.8, 0.1, 0.3, 0.0]],

@@ -139,15 +139,25 @@ fn moves() -> impl Strategy<Value = Drawn> {
     });
     let angles = prop::array::uniform2((-50.0..50.0, -120.0..120.0));
     let arc = || (place(), prop_oneof![Just([0.0, 0.0, 1.0]), axis(0.0..90.0)], -5.0..5.0);
-    let rotary = (any::<bool>(), place(), place(), angles, prop::option::of((arc(), any::<bool>()))).prop_map(
-        |(tilts, from, to, angles, arc)| {
+    let rotary = (
+        any::<bool>(),
+        place(),
+        place(),
+        angles,
+        prop::option::of((arc(), any::<bool>())),
+    )
+        .prop_map(|(tilts, from, to, angles, arc)| {
             let table = if tilts { RotaryTable::Ac } else { RotaryTable::Bc };
             let [a, b] = angles.map(|(tilt, round): (f64, f64)| [tilt, round]);
             let poses = vec![pose(from, table.axis(a)), pose(to, table.axis(b))];
             let turning = Turning::Rotary { table, from: a, to: b };
             let course = arc.map_or(TipCourse::Straight, |((centre, normal, angle), is_carried)| {
                 let arc = TipArc::new(centre, normal, angle).expect("an arc");
-                if is_carried { TipCourse::Carried(arc) } else { TipCourse::Arc(arc) }
+                if is_carried {
+                    TipCourse::Carried(arc)
+                } else {
+                    TipCourse::Arc(arc)
+                }
             });
             // The difference at the end of an arc takes a different course when reversed.
             let poses = match course {
@@ -155,8 +165,7 @@ fn moves() -> impl Strategy<Value = Drawn> {
                 TipCourse::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
             };
             Drawn::Moves(poses, vec![Move { course, turning }])
-        },
-    );
+        });
     let tilt = || prop_oneof![2 => Just([0.0, 0.0, 1.0]), 1 => axis(0.0..2.0), 2 => axis(0.0..60.0)];
     let round = (place(), tilt(), tilt(), arc(), prop_oneof![Just(0.0), -2.0..2.0]).prop_map(
         |(from, a, b, (centre, normal, angle), rise)| {

@@ -8,9 +8,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{
-    Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning,
-};
+use sweepsim_motion::{Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
 use sweepsim_tests::oracle::Motion;
 
 /// Checks all named motions that `relate` turns into another path, with two tools.
@@ -96,9 +94,8 @@ fn moves_cut_in_two_sweep_the_same() {
                     _ => middle.axis.into(),
                 };
                 let part = |share: f64| {
-                    way.course.map_arc(|arc| {
-                        TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc")
-                    })
+                    way.course
+                        .map_arc(|arc| TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc"))
                 };
                 let course = [part(cut), part(1.0 - cut)];
                 poses.extend([pose(middle.tip.into(), axis), end]);

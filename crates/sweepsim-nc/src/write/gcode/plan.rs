@@ -318,11 +318,11 @@ impl<'a> Plan<'a> {
 
     /// Whether a block of the machine's axes turns its table so.
     fn carries(&self, arc: &TipArc, ends: [&ToolPosition; 2]) -> bool {
-        let (Some(machine), [Some(from), Some(to)]) = (self.machine, ends.map(|end| end.position)) else {
+        let (Some(machine), [Aim::Angles(from), Aim::Angles(to)]) = (self.machine, ends.map(|end| end.aim)) else {
             return false;
         };
         let turn = |arc: &TipArc| Vector3::from(arc.normal()) * arc.angle();
-        let own = machine.carries(from.abc, to.abc).filter(|_| !self.options.tip_control);
+        let own = machine.carries(from, to).filter(|_| !self.options.tip_control);
         own.is_some_and(|own| {
             let off = Vector3::from(own.centre()) - Vector3::from(arc.centre());
             let apart = Vector3::from(arc.normal()).cross(&off).norm();
