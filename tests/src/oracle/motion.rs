@@ -263,6 +263,15 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
             tip_speed = round * (p0 - centre).cross(&normal).norm() + missing.norm();
             tip = Shared::new(move |t| turned(t) + missing * t);
         }
+        TipCourse::Carried(arc) => {
+            // Straight in the frame of the table.
+            let (centre, turn) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()) * arc.angle());
+            let seen = [p0 - centre, Rotation3::from_scaled_axis(-turn) * (p1 - centre)];
+            round = turn.norm();
+            let lever = seen.map(|point| turn.cross(&point).norm());
+            tip_speed = lever[0].max(lever[1]) + (seen[1] - seen[0]).norm();
+            tip = Shared::new(move |t| centre + Rotation3::from_scaled_axis(turn * t) * seen[0].lerp(&seen[1], t));
+        }
     }
     let axis: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
     let turn_speed;

@@ -144,25 +144,28 @@ impl Cell {
         if 0.5 * self.half * (CLIP - AROUND) < 4.0 * error && corners > 0 {
             return Err("the cell is too small to be divided");
         }
-        // Of some hundred bytes each; every sixteen corners count as another.
-        let take = |left: usize| left.checked_sub(1 + corners / 16);
-        if child.get().is_none()
-            && surface
-                .cells_left
-                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
-                .is_err()
-        {
+        if child.get().is_none() && surface.cells_left.load(Ordering::Relaxed) == 0 {
             return Err("the proof takes too many cells");
         }
         Ok(child.get_or_init(|| {
             let own = (centre, 0.5 * self.half, self.wanted);
-            match &self.near {
+            let own = match &self.near {
                 Near::Nothing(outside) => Self::with(own, Near::Nothing(*outside), Vec::new(), 0.0),
                 Near::Many => Self::new(own, surface, None, &self.triangles, 0.0),
                 Near::Pieces { corners, ends } => {
                     Self::new(own, surface, Some((corners, ends)), &self.triangles, self.error)
                 }
-            }
+            };
+            // Of some hundred bytes each; every sixteen corners count as another.
+            let corners = match &own.near {
+                Near::Pieces { corners, .. } => corners.len(),
+                _ => own.triangles.len() / 4,
+            };
+            let take = |left: usize| Some(left.saturating_sub(1 + corners / 16));
+            let _ = surface
+                .cells_left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
+            own
         }))
     }
 

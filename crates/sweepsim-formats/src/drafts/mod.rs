@@ -266,7 +266,7 @@ impl<'a> Drafter<'a> {
         let has_arcs = program
             .poses
             .in_order()
-            .any(|pose| matches!(pose.way().course, TipCourse::Arc(_)));
+            .any(|pose| pose.way().course != TipCourse::Straight);
         let chords = if has_arcs {
             (read.exact_arcs, read.arc_tolerance) = (false, 0.01);
             Some(provided.program(&file, &read)?)

@@ -68,7 +68,7 @@ fn arcs_and_helices() {
     assert_eq!(path.moves(), 3);
     let angle = |index: usize| match path.way(index).course {
         TipCourse::Arc(arc) => arc.angle(),
-        TipCourse::Straight => 0.0,
+        _ => 0.0,
     };
     assert_eq!(angle(0), 0.0);
     assert!((angle(1) + TAU + PI).abs() < 1e-12 && (angle(2) - PI).abs() < 1e-12);

@@ -35,6 +35,8 @@ enum Tip {
     Straight([Vector3<f64>; 2]),
     /// An arc from a start, and the difference at its end.
     Arc(TipArc, Vector3<f64>, Vector3<f64>),
+    /// The same, with the way in the frame that turns with the arc.
+    Carried(TipArc, Vector3<f64>, Vector3<f64>),
 }
 
 /// The turn over the whole move.
@@ -103,7 +105,7 @@ impl Turns {
         /// Rounding errors of orientations that are turned by an angle, and of the turn between them. Those of its axis
         /// are as much larger as the angle is smaller.
         const ROUNDING: f64 = 16.0 * f64::EPSILON;
-        let (Self::One { start, k, angle }, TipCourse::Arc(arc)) = (&self, course) else {
+        let (Self::One { start, k, angle }, Some(arc)) = (&self, course.arc()) else {
             return self;
         };
         let (normal, same_way) = (arc.normal_vector().into_inner(), (angle * arc.angle()).signum());
@@ -216,13 +218,17 @@ impl Tip {
                 from.tip_vector(),
                 to.tip_vector() - arc.turned(from.tip_vector(), 1.0),
             ),
+            TipCourse::Carried(arc) => {
+                let [from, to] = [from, to].map(Pose::tip_vector);
+                Self::Carried(*arc, from, arc.carried_way(from, to))
+            }
         }
     }
 
     fn angle(&self) -> f64 {
         match self {
             Self::Straight(_) => 0.0,
-            Self::Arc(arc, ..) => arc.angle().abs(),
+            Self::Arc(arc, ..) | Self::Carried(arc, ..) => arc.angle().abs(),
         }
     }
 
@@ -230,6 +236,10 @@ impl Tip {
         match self {
             Self::Straight(_) => 0.0,
             Self::Arc(arc, from, _) => arc.radius_vector(*from).norm(),
+            Self::Carried(arc, from, way) => {
+                let ends = [*from, from + way].map(|end| arc.radius_vector(end).norm());
+                ends[0].max(ends[1])
+            }
         }
     }
 
@@ -237,7 +247,7 @@ impl Tip {
     fn straight(&self) -> Vector3<f64> {
         match self {
             Self::Straight([from, to]) => to - from,
-            Self::Arc(_, _, missing) => *missing,
+            Self::Arc(_, _, way) | Self::Carried(_, _, way) => *way,
         }
     }
 
@@ -257,7 +267,7 @@ impl Tip {
                 };
                 (points, Vec::new())
             }
-            Self::Arc(arc, from, _) => {
+            Self::Arc(arc, from, _) | Self::Carried(arc, from, _) => {
                 let start = arc.turned(*from, begin);
                 let out = arc.radius_vector(start);
                 let foot = start - out;
@@ -266,9 +276,19 @@ impl Tip {
                 if way.norm() <= 4.0 * f64::EPSILON * (start.norm() + out.norm()) {
                     return (circle.to_vec(), weights.to_vec());
                 }
-                let rise = product(&weights, &times, |w, time| way * (w * time));
+                let added = match self {
+                    Self::Carried(..) => {
+                        let way = turn(arc.normal_vector().into_inner(), arc.angle() * begin) * way;
+                        product(&turns, &times, |turn, time| turn * way * *time)
+                    }
+                    _ => product(&weights, &times, |w, time| way * (w * time)),
+                };
                 let circle = product(&[1.0; 4], &circle, |one, point| point * *one);
-                let points = circle.iter().zip(&rise).map(|(circle, rise)| circle + rise).collect();
+                let points = circle
+                    .iter()
+                    .zip(&added)
+                    .map(|(circle, added)| circle + added)
+                    .collect();
                 (points, product(&weights, &[1.0; 4], |w, one| w * one))
             }
         }

@@ -9,7 +9,7 @@ const STRETCH: usize = 1 << 12;
 
 impl Path {
     /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself
-    /// along [motions](Path::along).
+    /// along [motions](Path::along) and where a rotary table carries the part.
     ///
     /// # Panics
     /// If there is no such move.
@@ -23,27 +23,14 @@ impl Path {
     #[must_use]
     pub fn tip_length(&self, index: usize) -> f64 {
         let (from, to) = self.ends(index);
-        let (from, to) = (from.tip_vector(), to.tip_vector());
-        let course = match &self.ways {
+        match &self.ways {
             Ways::Motion(motion) => {
                 let segment = motion.segment(index);
-                let chords = |count: usize| -> f64 {
-                    let at = |k: usize| Vector3::from(segment.at(k as f64 / count as f64).1);
-                    (0..count).map(|k| (at(k + 1) - at(k)).norm()).sum()
-                };
-                // The error of chords is of second order (Richardson 1911).
-                return (4.0 * chords(128) - chords(64)) / 3.0;
+                length_by_chords(64, |t| segment.at(t).1.into())
             }
-            Ways::Placed(placed) => return placed.own.tip_length(index),
-            Ways::Slerp => TipCourse::Straight,
-            Ways::Each(_) | Ways::Packed { .. } => self.way(index).course,
-        };
-        match course {
-            TipCourse::Straight => (to - from).norm(),
-            TipCourse::Arc(arc) => {
-                let rise = (to - from).dot(&arc.normal_vector());
-                (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
-            }
+            Ways::Placed(placed) => placed.own.tip_length(index),
+            Ways::Slerp => TipCourse::Straight.length([from.tip(), to.tip()]),
+            Ways::Each(_) | Ways::Packed { .. } => self.way(index).course.length([from.tip(), to.tip()]),
         }
     }
 
@@ -83,15 +70,27 @@ impl Path {
     /// The same of the whole way between them.
     pub(super) fn size_of_arcs(&self) -> f64 {
         let ends = self.largest();
-        let moves = self.ways_in_order().zip(self.poses_in_order(0));
-        moves.fold(ends, |size, (way, from)| match way.course {
-            TipCourse::Straight => size,
+        let poses = self.poses_in_order(0).zip(self.poses_in_order(1));
+        let moves = self.ways_in_order().zip(poses);
+        moves.fold(ends, |size, (way, (from, to))| {
+            let Some(arc) = way.course.arc() else { return size };
+            let from = from.tip_vector();
+            let radius = arc.radius_vector(from).norm();
+            let farthest = match way.course {
+                TipCourse::Carried(_) => radius.max(arc.radius_vector(to.tip_vector()).norm()),
+                _ => radius,
+            };
             // A circle, the rise, and what the rise is measured from.
-            TipCourse::Arc(arc) => size.max(
-                arc.turned(from.tip_vector(), 0.0).norm()
-                    + 2.0 * arc.radius_vector(from.tip_vector()).norm()
-                    + 2.0 * ends,
-            ),
+            size.max(from.norm() + radius + farthest + 2.0 * ends)
         })
     }
+}
+
+/// The length of a curve, from twice so many chords and from so many: their error is of second order (Richardson 1911).
+pub(super) fn length_by_chords(count: usize, at: impl Fn(f64) -> Vector3<f64>) -> f64 {
+    let chords = |count: usize| -> f64 {
+        let at = |k: usize| at(k as f64 / count as f64);
+        (0..count).map(|k| (at(k + 1) - at(k)).norm()).sum()
+    };
+    (4.0 * chords(2 * count) - chords(count)) / 3.0
 }

@@ -282,7 +282,7 @@ impl Path {
     #[must_use]
     pub fn rests(&self, from: usize, to: usize) -> bool {
         let still = |way: &Move| match (way.course, way.turning) {
-            (TipCourse::Arc(_), _) => false,
+            (TipCourse::Arc(_) | TipCourse::Carried(_), _) => false,
             (_, Turning::Rotary { from, to, .. }) => from == to,
             _ => true,
         };

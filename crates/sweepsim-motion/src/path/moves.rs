@@ -1,6 +1,9 @@
 //! Moves from one pose to the next.
 
+use super::extent::length_by_chords;
 use super::{RotaryTable, TipArc};
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
 
 /// A move from one pose to the next: the course of the tip, and how the tool turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,6 +22,69 @@ pub enum TipCourse {
     Straight,
     /// A circular arc or a helix, at constant speed.
     Arc(TipArc),
+    /// A straight line, at constant speed, in a frame that turns with the arc: a rotary table carries the part under a
+    /// tool that goes straight. The path of the tip is a spiral, which begins and ends at the poses.
+    Carried(TipArc),
+}
+
+impl TipCourse {
+    /// The arc by which the tip turns about an axis, or its frame.
+    #[must_use]
+    pub fn arc(&self) -> Option<&TipArc> {
+        match self {
+            Self::Straight => None,
+            Self::Arc(arc) | Self::Carried(arc) => Some(arc),
+        }
+    }
+
+    /// The tip at a time from 0 to 1, on its way between two points.
+    ///
+    /// ```
+    /// use sweepsim_motion::{TipArc, TipCourse};
+    /// let half = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], std::f64::consts::PI)?;
+    /// // Half a turn of a table, while the tool goes out from 2 to 4: a quarter is at 3.
+    /// let [x, y, _] = TipCourse::Carried(half).tip([[2.0, 0.0, 0.0], [-4.0, 0.0, 0.0]], 0.5);
+    /// assert!(x.abs() < 1e-15 && (y - 3.0).abs() < 1e-15);
+    /// # Ok::<(), sweepsim_motion::ArcError>(())
+    /// ```
+    #[must_use]
+    pub fn tip(&self, ends: [[f64; 3]; 2], time: f64) -> [f64; 3] {
+        let [from, to] = ends.map(Vector3::from);
+        let tip = match self {
+            Self::Straight => from + (to - from) * time,
+            Self::Arc(arc) => arc.turned(from, time) + (to - arc.turned(from, 1.0)) * time,
+            Self::Carried(arc) => arc.turned(from + arc.carried_way(from, to) * time, time),
+        };
+        tip.into()
+    }
+
+    /// The length of the tip's way between two points: exact for lines, arcs and helices, and to about 1e-6 of itself
+    /// where a table carries the part.
+    #[must_use]
+    pub fn length(&self, ends: [[f64; 3]; 2]) -> f64 {
+        let [from, to] = ends.map(Vector3::from);
+        match self {
+            Self::Straight => (to - from).norm(),
+            Self::Arc(arc) => {
+                let rise = (to - from).dot(&arc.normal_vector());
+                (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
+            }
+            Self::Carried(arc) => {
+                let quarters = (arc.angle().abs() / FRAC_PI_2).ceil() as usize;
+                length_by_chords(32 * quarters, |time| self.tip(ends, time).into())
+            }
+        }
+    }
+
+    /// The same with another arc.
+    #[must_use]
+    pub fn map_arc(self, change: impl FnOnce(&TipArc) -> TipArc) -> Self {
+        match self {
+            Self::Straight => Self::Straight,
+            Self::Arc(arc) => Self::Arc(change(&arc)),
+            Self::Carried(arc) => Self::Carried(change(&arc)),
+        }
+    }
 }
 
 /// How the tool turns during a move.
@@ -77,10 +143,7 @@ impl Move {
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
-            course: match self.course {
-                TipCourse::Straight => TipCourse::Straight,
-                TipCourse::Arc(arc) => TipCourse::Arc(arc.reversed()),
-            },
+            course: self.course.map_arc(TipArc::reversed),
             turning: match self.turning {
                 Turning::Rotary { table, from, to } => Turning::Rotary {
                     table,

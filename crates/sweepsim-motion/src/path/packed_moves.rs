@@ -25,6 +25,9 @@ pub struct PackedMoves {
 }
 
 const ARC: u8 = 8;
+const CARRIED: u8 = 16;
+/// Of the kinds of turning.
+const TURNING: u8 = ARC - 1;
 
 impl Default for PackedMoves {
     fn default() -> Self {
@@ -51,12 +54,16 @@ impl PackedMoves {
                 }
             }
         };
-        if let TipCourse::Arc(arc) = way.course {
+        if let Some(arc) = way.course.arc() {
             row[1..4].copy_from_slice(&arc.centre());
             row[4..7].copy_from_slice(&arc.normal());
             row[7] = arc.angle();
-            kind |= ARC;
         }
+        kind |= match way.course {
+            TipCourse::Straight => 0,
+            TipCourse::Arc(_) => ARC,
+            TipCourse::Carried(_) => CARRIED,
+        };
         row[0] = f64::from(kind);
         self.last = row;
         self.rows.push(row);
@@ -103,17 +110,14 @@ fn of_way_row(row: [f64; 12]) -> Move {
         from: [row[8], row[9]],
         to: [row[10], row[11]],
     };
+    let arc = TipArc::of_parts([row[1], row[2], row[3]], [row[4], row[5], row[6]], row[7]);
     Move {
-        course: if kind & ARC == 0 {
-            TipCourse::Straight
-        } else {
-            TipCourse::Arc(TipArc::of_parts(
-                [row[1], row[2], row[3]],
-                [row[4], row[5], row[6]],
-                row[7],
-            ))
+        course: match kind & !TURNING {
+            ARC => TipCourse::Arc(arc),
+            CARRIED => TipCourse::Carried(arc),
+            _ => TipCourse::Straight,
         },
-        turning: match kind & (ARC - 1) {
+        turning: match kind & TURNING {
             0 => Turning::Slerp,
             1 => Turning::Even,
             2 => rotary(RotaryTable::Ac),

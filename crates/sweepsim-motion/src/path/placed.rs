@@ -1,6 +1,6 @@
 //! Paths in another frame.
 
-use super::{Move, PackedPoses, Path, PathError, Poses, TipCourse, Ways};
+use super::{Move, PackedPoses, Path, PathError, Poses, Ways};
 use crate::pose::Pose;
 use crate::segment::Segment;
 use nalgebra::{Matrix3, Vector3};
@@ -82,10 +82,7 @@ impl Placed {
     pub fn way(&self, index: usize) -> Move {
         let own = self.own.way(index);
         Move {
-            course: match own.course {
-                TipCourse::Straight => TipCourse::Straight,
-                TipCourse::Arc(arc) => TipCourse::Arc(arc.moved(&self.turn, self.shift)),
-            },
+            course: own.course.map_arc(|arc| arc.moved(&self.turn, self.shift)),
             ..own
         }
     }

@@ -208,6 +208,12 @@ impl TipArc {
         from - n * n.dot(&from)
     }
 
+    /// From `from` to `to` in the frame that turns with the arc, which at the start is the part's.
+    pub(crate) fn carried_way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Vector3<f64> {
+        let back = Rotation3::from_axis_angle(&self.normal, -self.angle);
+        back * (to - self.centre) - (from - self.centre)
+    }
+
     /// The position of `from` after the fraction `part` of the angle, without the difference at the end.
     pub(crate) fn turned(&self, from: Vector3<f64>, part: f64) -> Vector3<f64> {
         let turn = Rotation3::from_axis_angle(&self.normal, self.angle * part);

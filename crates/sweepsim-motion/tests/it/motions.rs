@@ -33,6 +33,16 @@ fn law(from: &Pose, to: &Pose, way: &Move, time: f64) -> (Vector3<f64>, Vector3<
             };
             turned(time) + (Vector3::from(to.tip()) - turned(1.0)) * time
         }
+        TipCourse::Carried(arc) => {
+            // Where the table has turned back, the tool goes straight.
+            let back = |part: f64, point: [f64; 3]| {
+                let turn = Rotation3::from_scaled_axis(Vector3::from(arc.normal()) * (-arc.angle() * part));
+                turn * (Vector3::from(point) - Vector3::from(arc.centre()))
+            };
+            let seen = back(0.0, from.tip()).lerp(&back(1.0, to.tip()), time);
+            let turn = Rotation3::from_scaled_axis(Vector3::from(arc.normal()) * (arc.angle() * time));
+            Vector3::from(arc.centre()) + turn * seen
+        }
     };
     let axis = if let Turning::Rotary { table, from, to } = way.turning {
         Vector3::from(table.axis([0, 1].map(|k| from[k] + (to[k] - from[k]) * time)))
@@ -91,7 +101,12 @@ fn move_of(kind: usize, from: [f64; 3], to: [f64; 3], angles: [[f64; 2]; 2], axe
         0 => Path::with_law(plain()?, Law::ConstantSpeed).ok(),
         1 => Path::with_moves(plain()?, vec![Move::arc(arc())]).ok(),
         2 | 3 => rotary(TipCourse::Straight),
-        _ => rotary(TipCourse::Arc(arc())),
+        4 | 5 => rotary(TipCourse::Arc(arc())),
+        6 => {
+            let (course, turning) = (TipCourse::Carried(arc()), Turning::Even);
+            Path::with_moves(plain()?, vec![Move { course, turning }]).ok()
+        }
+        _ => rotary(TipCourse::Carried(arc())),
     }
 }
 
@@ -140,7 +155,7 @@ proptest! {
 
     #[test]
     fn no_move_deviates_from_its_law_by_more_than_stated(
-        kind in 0_usize..6, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]), limit in 1e-6..1e-2,
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -152,7 +167,7 @@ proptest! {
 
     #[test]
     fn rates_are_derivatives(
-        kind in 0_usize..6, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]), t in 0.01..0.99,
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -198,7 +213,7 @@ proptest! {
     /// Parts of one move join without a kink: the velocity after is a positive multiple of that before.
     #[test]
     fn parts_join_smoothly(
-        kind in 0_usize..6, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]),
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -255,34 +270,70 @@ fn a_reversed_move_goes_through_the_same_placements() {
     let table = RotaryTable::Bc;
     let angles = [[20.0, -30.0], [50.0, 80.0]];
     let arc = TipArc::new([0.0; 3], [0.0, 0.3, 1.0], 2.0).unwrap();
-    let way = Move {
-        course: TipCourse::Arc(arc),
-        turning: Turning::Rotary {
-            table,
-            from: angles[0],
-            to: angles[1],
-        },
-    };
-    let poses = vec![
-        Pose::new([3.0, 0.0, 0.0], table.axis(angles[0])).unwrap(),
-        Pose::new([-1.0, 2.5, 1.0], table.axis(angles[1])).unwrap(),
-    ];
-    let back: Vec<Pose> = poses.iter().rev().copied().collect();
-    let there = Path::with_moves(poses, vec![way]).unwrap().segments(0, REACH, 1e-6);
-    let back = Path::with_moves(back, vec![way.reversed()])
-        .unwrap()
-        .segments(0, REACH, 1e-6);
-    assert_eq!(there.len(), back.len());
-    let placed = |segment: &Segment, t: f64| {
-        let (turn, tip) = segment.at(t);
-        (turn.column(2).into_owned(), tip)
-    };
-    // The drift of a reversed arc is turned with its end; both deviate from the law, and they agree only where there is no drift.
-    for (k, segment) in there.iter().enumerate() {
-        let (axis, _) = placed(segment, 0.3);
-        let (other, _) = placed(&back[back.len() - 1 - k], 0.7);
-        assert!((axis - other).norm() < 1e-6);
+    for course in [TipCourse::Arc(arc), TipCourse::Carried(arc)] {
+        let way = Move {
+            course,
+            turning: Turning::Rotary {
+                table,
+                from: angles[0],
+                to: angles[1],
+            },
+        };
+        let poses = vec![
+            Pose::new([3.0, 0.0, 0.0], table.axis(angles[0])).unwrap(),
+            Pose::new([-1.0, 2.5, 1.0], table.axis(angles[1])).unwrap(),
+        ];
+        let back: Vec<Pose> = poses.iter().rev().copied().collect();
+        let there = Path::with_moves(poses, vec![way]).unwrap();
+        let back = Path::with_moves(back, vec![way.reversed()]).unwrap();
+        let [there, back] = [there, back].map(|path| path.segments(0, REACH, 1e-6));
+        assert_eq!(there.len(), back.len());
+        let placed = |segment: &Segment, t: f64| {
+            let (turn, tip) = segment.at(t);
+            (turn.column(2).into_owned(), Vector3::from(tip))
+        };
+        for (k, segment) in there.iter().enumerate() {
+            let (axis, tip) = placed(segment, 0.3);
+            let (other, reached) = placed(&back[back.len() - 1 - k], 0.7);
+            assert!((axis - other).norm() < 1e-6);
+            // The drift of a reversed arc is turned with its end: both deviate from the law, and they agree only where
+            // there is no drift. Where the frame turns, there is none.
+            let is_carried = matches!(course, TipCourse::Carried(_));
+            assert_eq!((tip - reached).norm() < 2e-6, is_carried, "{course:?}");
+        }
     }
+}
+
+/// Under a table that turns by a full turn, a tool that goes out along a radius cuts a spiral of Archimedes.
+#[test]
+fn a_carried_tip_goes_along_a_spiral() {
+    let (a, b) = (10.0, 14.0);
+    let arc = TipArc::new([1.0, 2.0, 0.0], [0.0, 0.0, 1.0], std::f64::consts::TAU).unwrap();
+    let up = [0.0, 0.0, 1.0];
+    let poses = [a, b].map(|r| Pose::new([1.0 + r, 2.0, 0.0], up).unwrap());
+    let course = TipCourse::Carried(arc);
+    let turning = Turning::Even;
+    let path = Path::with_moves(poses.to_vec(), vec![Move { course, turning }]).unwrap();
+    let parts = path.segments(0, REACH, 1e-6);
+    for (n, part) in parts.iter().enumerate() {
+        for k in 0..=10 {
+            let t = f64::from(k) / 10.0;
+            let time = (n as f64 + part.time(t)) / parts.len() as f64;
+            let (r, angle) = (a + (b - a) * time, std::f64::consts::TAU * time);
+            let tip = Vector3::from(part.at(t).1) - Vector3::new(1.0, 2.0, 0.0);
+            assert!((tip - Vector3::new(r * angle.cos(), r * angle.sin(), 0.0)).norm() < 1e-6);
+        }
+    }
+    // ∫ √(r² + r′²) dφ with r = r′ (φ + φ₀): r′/2 [u √(1 + u²) + asinh u] over u = r/r′.
+    let slope = (b - a) / std::f64::consts::TAU;
+    let whole = |u: f64| 0.5 * slope * (u * u.hypot(1.0) + u.asinh());
+    let length = whole(b / slope) - whole(a / slope);
+    assert!(
+        (path.tip_length(0) / length - 1.0).abs() < 1e-6,
+        "{} {length}",
+        path.tip_length(0)
+    );
+    assert!(path.size() >= 15.0 && path.size() < 80.0, "{}", path.size());
 }
 
 fn knots(degree: usize) -> KnotVector {

@@ -1,6 +1,6 @@
 //! Packed rows and paths hold what was put in, to the last bit.
 
-use sweepsim_motion::{Law, Move, PackedRows, Path, PathBuilder, Pose, RotaryTable, TipArc, Turning};
+use sweepsim_motion::{Law, Move, PackedRows, Path, PathBuilder, Pose, RotaryTable, TipArc, TipCourse, Turning};
 use sweepsim_props::*;
 
 /// Numbers as programs have them, and any others.
@@ -94,6 +94,10 @@ fn course(count: usize, turns: bool) -> (Vec<Pose>, Vec<Move>) {
             );
             moves.push(match arc {
                 Ok(arc) if k > count / 2 && k % 7 == 0 => Move::arc(arc),
+                Ok(arc) if k > count / 2 && k % 7 == 1 => Move {
+                    course: TipCourse::Carried(arc),
+                    turning: Turning::Even,
+                },
                 _ if k % 11 == 0 => Move::straight(Turning::Even),
                 _ => Move::default(),
             });

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use sweepsim_motion::{Pose, RotaryTable, Turning};
+use sweepsim_motion::{Move, Pose, RotaryTable, TipCourse, Turning};
 
 use crate::machines::{Kinematics, Machine, Position, Rotaries};
+use crate::model::kept_arcs::KeptArcs;
 use crate::model::read_options::{AxisLaw, ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
@@ -46,6 +47,8 @@ pub(crate) struct Driver {
     implied: Option<usize>,
     sense: Sense,
     law: AxisLaw,
+    /// Whether moves of a part that turns under the tool are kept as such, not as chords.
+    carries: bool,
     tolerance: f64,
     tool: Option<u32>,
     tool_length: f64,
@@ -70,6 +73,7 @@ impl Driver {
             implied: None,
             sense,
             law: options.law,
+            carries: !KeptArcs::new(options).none(),
             tolerance: options.arc_tolerance,
             tool_length: machine
                 .kinematics
@@ -265,8 +269,8 @@ impl Driver {
         }
     }
 
-    /// How the tool turns between two positions, and into how many equal parts the move must be divided for it.
-    pub fn division(&mut self, from: &Position, to: &Position, coordinates: Coordinates) -> Result<usize, NcProblem> {
+    /// Into how many equal parts a move must be divided for the turn of the tool, whose path then has chords.
+    fn division(&mut self, from: &Position, to: &Position, coordinates: Coordinates) -> Result<usize, NcProblem> {
         if from.abc == to.abc {
             return Ok(1);
         }
@@ -298,15 +302,15 @@ impl Driver {
         Ok(parts as usize)
     }
 
-    /// The positions along a straight move, to its end: those that divide it for the turn of the tool, and the corners of
-    /// a rapid in which axes turn without tip control.
+    /// The positions along a straight move, to its end, with the move to each: those that divide it for the turn of the
+    /// tool, and the corners of a rapid in which axes turn without tip control.
     pub fn course(
         &mut self,
         from: &Position,
         to: &Position,
         rapid: bool,
         coordinates: Coordinates,
-    ) -> Result<Vec<Position>, NcProblem> {
+    ) -> Result<Vec<(Position, Move)>, NcProblem> {
         let turns = rapid && coordinates == Coordinates::Axes && from.abc != to.abc;
         let legs = match self.kinematics.as_deref().filter(|_| turns) {
             Some(machine) => machine
@@ -319,12 +323,42 @@ impl Driver {
         };
         let (mut course, mut last) = (Vec::new(), *from);
         for end in legs {
+            if let Some(carried) = self.carried(last.abc, end.abc, coordinates)? {
+                course.push((end, carried));
+                last = end;
+                continue;
+            }
             let parts = self.division(&last, &end, coordinates)?;
-            course.extend((1..parts).map(|part| last.towards(&end, part as f64 / parts as f64)));
-            course.push(end);
+            let mut before = last.abc;
+            for part in 1..=parts {
+                let at = if part == parts {
+                    end
+                } else {
+                    last.towards(&end, part as f64 / parts as f64)
+                };
+                course.push((at, Move::straight(self.turning(before, at.abc, coordinates)?)));
+                before = at.abc;
+            }
             last = end;
         }
         Ok(course)
+    }
+
+    /// The move of a tool that goes straight while one axis of the table turns it: one of which no point is a chord.
+    fn carried(&mut self, from: [f64; 3], to: [f64; 3], coordinates: Coordinates) -> Result<Option<Move>, NcProblem> {
+        let arc = match (coordinates, &self.kinematics) {
+            (Coordinates::Axes, Some(kinematics)) if self.carries => kinematics.carries(from, to),
+            _ => None,
+        };
+        let Some(arc) = arc else { return Ok(None) };
+        // A tool along the axis of the turn keeps its direction: chords of its path are solved faster.
+        Ok(match self.turning(from, to, coordinates)? {
+            turning @ Turning::Rotary { .. } => Some(Move {
+                course: TipCourse::Carried(arc),
+                turning,
+            }),
+            Turning::Slerp | Turning::Even => None,
+        })
     }
 
     /// How the tool turns in a part of a move.

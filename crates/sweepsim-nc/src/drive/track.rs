@@ -323,13 +323,9 @@ impl Track {
                 });
             }
             self.in_pieces(course.len(), |own| {
-                let mut last = from.abc;
-                for between in course {
-                    let turning = own.driver.turning(last, between.abc, own.coordinates)?;
-                    own.push(between, Move::straight(turning), rapid)?;
-                    last = between.abc;
-                }
-                Ok(())
+                course
+                    .into_iter()
+                    .try_for_each(|(between, way)| own.push(between, way, rapid))
             })?;
         } else {
             self.push(to, Move::default(), rapid)?;
@@ -357,7 +353,7 @@ impl Track {
             }
             _ => self.driver.pose(&to, self.coordinates)?,
         };
-        let moves = matches!(way.course, TipCourse::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
+        let moves = way.course != TipCourse::Straight || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| is_same(&last.pose, &pose));
         if !same {
             self.check_room(self.program.poses.len())?;

@@ -132,8 +132,13 @@ fn joined([low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
 fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let ends = joined([a; 2], [b; 2]);
-    let TipCourse::Arc(arc) = to.way().course else {
-        return ends;
+    let arc = match to.way().course {
+        TipCourse::Straight => return ends,
+        TipCourse::Arc(arc) => arc,
+        course @ TipCourse::Carried(arc) => {
+            let samples = (256.0 * arc.angle().abs() / TAU).ceil().max(4.0);
+            return sampled_extent(samples as usize, |time| course.tip([a, b], time));
+        }
     };
     let (n, angle) = (arc.normal(), arc.angle());
     let dot = |v: [f64; 3]| v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
@@ -160,6 +165,27 @@ fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
         }
     }
     all
+}
+
+/// The box around a smooth course, of whose wiggles none is shorter than some samples: of each coordinate, the parabola through three of them.
+fn sampled_extent(samples: usize, at: impl Fn(f64) -> [f64; 3]) -> [[f64; 3]; 2] {
+    let points: Vec<[f64; 3]> = (0..=samples).map(|k| at(k as f64 / samples as f64)).collect();
+    let ends = points
+        .iter()
+        .fold([points[0]; 2], |all, point| joined(all, [*point; 2]));
+    points.windows(3).fold(ends, |all, three| {
+        let extreme = |k: usize| {
+            let [p, q, r] = [three[0][k], three[1][k], three[2][k]];
+            let (slope, bend) = (0.5 * (r - p), p - 2.0 * q + r);
+            // Its extreme, if that is between the first and the last.
+            if slope.abs() < bend.abs() {
+                q - 0.5 * slope * slope / bend
+            } else {
+                q
+            }
+        };
+        joined(all, [[0, 1, 2].map(extreme); 2])
+    })
 }
 
 impl ToolUsage {
@@ -195,34 +221,23 @@ impl ToolUsage {
 
 /// The length of the tip's way.
 pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
-    let (a, b) = (from.pose.tip(), to.pose.tip());
-    let chord = [0, 1, 2].map(|k| b[k] - a[k]);
-    match to.way().course {
-        TipCourse::Straight => chord[0].hypot(chord[1]).hypot(chord[2]),
-        TipCourse::Arc(arc) => {
-            let (centre, normal) = (arc.centre(), arc.normal());
-            let dot = |v: [f64; 3]| v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2];
-            let radial = [0, 1, 2].map(|k| a[k] - centre[k]);
-            let along = dot(radial);
-            let across = [0, 1, 2].map(|k| radial[k] - along * normal[k]);
-            let radius = across[0].hypot(across[1]).hypot(across[2]);
-            (radius * arc.angle()).hypot(dot(chord))
-        }
-    }
+    to.way().course.length([from.pose.tip(), to.pose.tip()])
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::machines::Machine;
+    use crate::model::program::Program;
     use crate::model::read_options::ReadOptions;
 
-    /// Arcs and helices in all planes, turned too, against points along chords.
+    /// Arcs and helices in all planes, turned too, and moves of a part that turns, against points along chords.
     #[test]
     fn boxes_hold_arcs_and_touch_them() {
         let mut options = ReadOptions {
             exact_arcs: true,
             ..ReadOptions::default()
         };
-        let mut bulges = 0;
+        let mut programs = Vec::new();
         for turn in ["", "G68 X0 Y0 R33\n", "G68.2 X1 Y2 Z3 I20 J35 K10\n"] {
             for arc in [
                 "G17 G2 X0 Y0 I5 J2 F100",
@@ -233,35 +248,43 @@ mod tests {
                 "G18 G3 X6 Z5 Y2 I3 K0 P2 F100",
                 "G19 G3 Y0 Z5 J1 K-4 F100",
             ] {
-                let text = format!("G21\nM428\nG0 X0 Y0 Z5 A0 B0\n{turn}G0 X0 Y0 Z5\n{arc}\n");
-                let program = crate::gcode::read(&text, &options).unwrap_or_else(|error| panic!("{text}{error}"));
-                let [low, high] = program.extent().unwrap();
-                options.exact_arcs = false;
-                options.arc_tolerance = 1e-5;
-                let chords = crate::gcode::read(&text, &options).unwrap();
-                options.exact_arcs = true;
-                let tips = || chords.poses.in_order().map(|pose| pose.pose.tip());
-                for k in 0..3 {
-                    let range = tips().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], tip| {
-                        [a.min(tip[k]), b.max(tip[k])]
-                    });
-                    assert!(
-                        (low[k] - range[0]).abs() < 2e-5 && (high[k] - range[1]).abs() < 2e-5,
-                        "{text}{k}: {low:?} {high:?} {range:?}"
-                    );
-                    let ends = [0, 1].map(|n| {
-                        program
-                            .poses
-                            .in_order()
-                            .nth(program.poses.len() - 1 - n)
-                            .unwrap()
-                            .pose
-                            .tip()[k]
-                    });
-                    bulges += usize::from(range[1] > ends[0].max(ends[1]) + 0.1);
-                }
+                programs.push((
+                    None,
+                    format!("G21\nM428\nG0 X0 Y0 Z5 A0 B0\n{turn}G0 X0 Y0 Z5\n{arc}\n"),
+                ));
             }
         }
-        assert!(bulges > 15, "{bulges}");
+        for block in ["A70", "A-250 Z9", "X4 Y-3 A400", "Y6 Z1 A-1000"] {
+            let text = format!("G21\nG0 X0 Y2 Z5 A20\nG1 {block} F100\n");
+            programs.push((Some("rotary-a"), text));
+        }
+        let mut bulges = [0; 2];
+        for (machine, text) in programs {
+            options.machine = machine.map_or_else(Machine::default, |name| Machine::named(name).unwrap());
+            let program = crate::gcode::read(&text, &options).unwrap_or_else(|error| panic!("{text}{error}"));
+            let [low, high] = program.extent().unwrap();
+            options.exact_arcs = false;
+            options.arc_tolerance = 1e-5;
+            let chords = crate::gcode::read(&text, &options).unwrap();
+            options.exact_arcs = true;
+            assert!(chords.poses.len() > 100 && program.poses.len() < 5, "{text}");
+            let tips =
+                |program: &Program| -> Vec<[f64; 3]> { program.poses.in_order().map(|pose| pose.pose.tip()).collect() };
+            for k in 0..3 {
+                let range = tips(&chords)
+                    .iter()
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], tip| {
+                        [a.min(tip[k]), b.max(tip[k])]
+                    });
+                assert!(
+                    (low[k] - range[0]).abs() < 2e-5 && (high[k] - range[1]).abs() < 2e-5,
+                    "{text}{k}: {low:?} {high:?} {range:?}"
+                );
+                let ends = tips(&program);
+                let largest = ends[ends.len() - 2..].iter().fold(f64::MIN, |all, tip| all.max(tip[k]));
+                bulges[usize::from(machine.is_some())] += usize::from(range[1] > largest + 0.1);
+            }
+        }
+        assert!(bulges[0] > 15 && bulges[1] > 2, "{bulges:?}");
     }
 }

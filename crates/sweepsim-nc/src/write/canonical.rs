@@ -82,9 +82,14 @@ fn of_pose(pose: &ProgramPose, unit: f64) -> String {
             format!("feed {}{per}", shortest(feed))
         }
     };
-    let arc = match pose.way().course {
-        TipCourse::Arc(arc) if pose.joined => format!(
-            " about ({}) normal ({}) by {} deg",
+    let course = pose.way().course;
+    let word = match course {
+        TipCourse::Carried(_) => " carried",
+        _ => "",
+    };
+    let arc = match course.arc() {
+        Some(arc) if pose.joined => format!(
+            "{word} about ({}) normal ({}) by {} deg",
             words(arc.centre()),
             words(arc.normal()),
             shortest(arc.angle().to_degrees())

@@ -3,14 +3,17 @@
 use std::f64::consts::TAU;
 use std::io::{Result, Write};
 
-use sweepsim_motion::{TipArc, TipCourse, Turning};
+use sweepsim_motion::{Move, TipArc, TipCourse, Turning};
 
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::text::numbers::shortest;
+use crate::write::chords::chords;
 
 /// Ends of an arc nearer than this, in mm, look like those of a full turn.
 const NEAR: f64 = 1e-2;
+/// How far chords may be from what a table carries, in mm.
+const CHORD: f64 = 1e-3;
 
 fn words(point: [f64; 3]) -> String {
     point.map(shortest).join(",")
@@ -83,6 +86,21 @@ impl<W: Write> Output<'_, W> {
                 _ => {}
             }
         }
+        let course = pose.way().course;
+        if let (true, Some(last), TipCourse::Carried(_)) = (pose.joined, last, course) {
+            self.lose(format!("moves while the table turns: chords within {CHORD} mm"));
+            let all = chords(&course, &last.pose, &pose.pose, CHORD);
+            let mut piece = pose.clone();
+            piece.set_way(Move::default());
+            if pose.feed_mode == FeedMode::InverseTime {
+                piece.feed = pose.feed.map(|feed| feed * all.len() as f64);
+            }
+            for end in all {
+                piece.pose = end;
+                self.pose(&piece, Some(last))?;
+            }
+            return Ok(());
+        }
         if pose.rapid {
             writeln!(self.writer, "RAPID")?;
         } else if let Some(feed) = pose.feed
@@ -98,12 +116,9 @@ impl<W: Write> Output<'_, W> {
         if !pose.rapid && pose.feed.is_none() && self.feed.is_some() {
             self.lose("moves without a feed after others with one".to_owned());
         }
-        if let (true, Some(last), TipCourse::Arc(arc)) = (pose.joined, last, pose.way().course) {
+        if let (true, Some(last), TipCourse::Arc(arc)) = (pose.joined, last, course) {
             self.arc(&arc, last, pose)?;
-        } else if pose.joined
-            && !matches!(pose.way().turning, Turning::Slerp)
-            && pose.way().course == TipCourse::Straight
-        {
+        } else if pose.joined && !matches!(pose.way().turning, Turning::Slerp) && course == TipCourse::Straight {
             self.lose("how the tool axis turns between two points".to_owned());
         }
         let (tip, axis) = (pose.pose.tip(), pose.pose.axis());

@@ -1,6 +1,7 @@
 //! Writes programs: as G-code, as CLSF, and as text with one line per move.
 
 mod canonical;
+mod chords;
 mod clsf;
 mod gcode;
 

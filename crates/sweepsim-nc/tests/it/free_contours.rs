@@ -103,7 +103,7 @@ fn arcs_by_what_a_drawing_says() {
 fn directions(program: &Program, number: usize) -> [[f64; 2]; 2] {
     let [from, to] = [number, number + 1].map(|k| program.poses[k].pose.tip());
     match program.poses[number + 1].way().course {
-        TipCourse::Straight => {
+        TipCourse::Straight | TipCourse::Carried(_) => {
             let (x, y) = (to[0] - from[0], to[1] - from[1]);
             [[x / x.hypot(y), y / x.hypot(y)]; 2]
         }
@@ -154,7 +154,7 @@ fn arcs_that_round_between_circles() {
     is_smooth(&program, 1..5);
     let middle = |number: usize| match program.poses[number].way().course {
         TipCourse::Arc(arc) => arc.centre(),
-        TipCourse::Straight => panic!("an arc"),
+        _ => panic!("an arc"),
     };
     for number in [3, 5] {
         let [x, y, _] = middle(number);
@@ -194,7 +194,7 @@ fn approach_compensation_and_corners() {
         .iter()
         .filter_map(|pose| match pose.way().course {
             TipCourse::Arc(arc) => Some((pose.pose.tip(), arc.centre())),
-            TipCourse::Straight => None,
+            _ => None,
         })
         .map(|(tip, centre)| (tip[0] - centre[0]).hypot(tip[1] - centre[1]))
         .collect();

@@ -368,7 +368,7 @@ fn rounded_numbers() {
             .iter()
             .filter_map(|pose| match pose.way().course {
                 TipCourse::Arc(arc) => Some(arc.angle()),
-                TipCourse::Straight => None,
+                _ => None,
             })
             .collect();
         assert_eq!(arcs.len(), 1, "{text}");

@@ -52,6 +52,23 @@ fn rotary(name: &str, table: RotaryTable, places: &[([f64; 3], [f64; 2])]) -> Na
     named(name, poses.collect(), moves.collect())
 }
 
+/// A tool that goes straight by `way` from `(0, 1.5, 1)` in the machine, while one axis of a table turns.
+fn carried(name: &str, from: [f64; 2], to: [f64; 2], [pivot, way]: [[f64; 3]; 2]) -> Named {
+    let table = RotaryTable::Ac;
+    let axis = if from[0] == to[0] { UP } else { [1.0, 0.0, 0.0] };
+    let turned = |angles: [f64; 2], point: Vector3<f64>| table.orientation(angles) * point + Vector3::from(pivot);
+    let start = Vector3::new(0.0, 1.5, 1.0);
+    let tips = [turned(from, start), turned(to, start + Vector3::from(way))];
+    let poses = vec![
+        pose(tips[0].into(), table.axis(from)),
+        pose(tips[1].into(), table.axis(to)),
+    ];
+    let angle = [0, 1].map(|k| from[k] - to[k]).iter().sum::<f64>().to_radians();
+    let course = TipCourse::Carried(TipArc::new(pivot, axis, angle).expect("an arc"));
+    let turning = Turning::Rotary { table, from, to };
+    named(name, poses, vec![Move { course, turning }])
+}
+
 pub fn arc(name: &str, from: Pose, to: Pose, centre: [f64; 3], normal: [f64; 3], turns: i32) -> Named {
     let arc = TipArc::between(from.tip(), to.tip(), centre, normal, turns).expect("an arc");
     named(name, vec![from, to], vec![Move::arc(arc)])
@@ -281,6 +298,19 @@ pub fn motions() -> Vec<Named> {
                     to: [-25.0, 90.0],
                 },
             }],
+        ),
+        // A fourth axis under a tool that goes straight: along it, across it and down.
+        carried(
+            "a table about x",
+            [0.0; 2],
+            [70.0, 0.0],
+            [[1.0, 0.0, 0.0], [0.5, -1.5, 0.5]],
+        ),
+        carried(
+            "a table about z, tilted",
+            [-35.0, 20.0],
+            [-35.0, 150.0],
+            [o, [0.4, 0.6, -0.3]],
         ),
         bezier(
             "spline motion, quadratic",

@@ -63,13 +63,11 @@ impl Drawn {
             }
             other => [other; 2],
         };
-        let course = match moves[0].course {
-            TipCourse::Straight => [TipCourse::Straight; 2],
-            TipCourse::Arc(arc) => [part, 1.0 - part].map(|share| {
-                let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
-                TipCourse::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
-            }),
+        let share = |share: f64| {
+            let part = |arc: &TipArc| TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc");
+            moves[0].course.map_arc(part)
         };
+        let course = [part, 1.0 - part].map(share);
         let axis = match turning[0] {
             Turning::Rotary { table, to, .. } => table.axis(to),
             _ => middle.axis.into(),
@@ -95,14 +93,10 @@ impl Drawn {
             Self::Moves(poses, moves) => {
                 let place = |p: &Pose| pose((Vector3::from(p.tip()) + by).into(), p.axis());
                 let shift = |way: &Move| Move {
-                    course: match way.course {
-                        TipCourse::Straight => TipCourse::Straight,
-                        TipCourse::Arc(arc) => {
-                            let normal = Vector3::from(arc.normal());
-                            let centre = Vector3::from(arc.centre()) + by;
-                            TipCourse::Arc(TipArc::new(centre.into(), normal.into(), arc.angle()).expect("an arc"))
-                        }
-                    },
+                    course: way.course.map_arc(|arc| {
+                        let centre = Vector3::from(arc.centre()) + by;
+                        TipArc::new(centre.into(), arc.normal(), arc.angle()).expect("an arc")
+                    }),
                     turning: way.turning,
                 };
                 Path::with_moves(poses.iter().map(place).collect(), moves.iter().map(shift).collect()).expect("a path")
@@ -145,23 +139,33 @@ fn moves() -> impl Strategy<Value = Drawn> {
     });
     let angles = prop::array::uniform2((-50.0..50.0, -120.0..120.0));
     let arc = || (place(), prop_oneof![Just([0.0, 0.0, 1.0]), axis(0.0..90.0)], -5.0..5.0);
-    let rotary = (any::<bool>(), place(), place(), angles, prop::option::of(arc())).prop_map(
-        |(tilts, from, to, angles, arc)| {
+    let rotary = (
+        any::<bool>(),
+        place(),
+        place(),
+        angles,
+        prop::option::of((arc(), any::<bool>())),
+    )
+        .prop_map(|(tilts, from, to, angles, arc)| {
             let table = if tilts { RotaryTable::Ac } else { RotaryTable::Bc };
             let [a, b] = angles.map(|(tilt, round): (f64, f64)| [tilt, round]);
             let poses = vec![pose(from, table.axis(a)), pose(to, table.axis(b))];
             let turning = Turning::Rotary { table, from: a, to: b };
-            let course = arc.map_or(TipCourse::Straight, |(centre, normal, angle)| {
-                TipCourse::Arc(TipArc::new(centre, normal, angle).expect("an arc"))
+            let course = arc.map_or(TipCourse::Straight, |((centre, normal, angle), is_carried)| {
+                let arc = TipArc::new(centre, normal, angle).expect("an arc");
+                if is_carried {
+                    TipCourse::Carried(arc)
+                } else {
+                    TipCourse::Arc(arc)
+                }
             });
             // The difference at the end of an arc takes a different course when reversed.
             let poses = match course {
-                TipCourse::Straight => poses,
+                TipCourse::Straight | TipCourse::Carried(_) => poses,
                 TipCourse::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
             };
             Drawn::Moves(poses, vec![Move { course, turning }])
-        },
-    );
+        });
     let tilt = || prop_oneof![2 => Just([0.0, 0.0, 1.0]), 1 => axis(0.0..2.0), 2 => axis(0.0..60.0)];
     let round = (place(), tilt(), tilt(), arc(), prop_oneof![Just(0.0), -2.0..2.0]).prop_map(
         |(from, a, b, (centre, normal, angle), rise)| {

@@ -8,9 +8,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{
-    Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, TipCourse, Tool, Turn, Turning,
-};
+use sweepsim_motion::{Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
 use sweepsim_tests::oracle::Motion;
 
 /// Checks all named motions that `relate` turns into another path, with two tools.
@@ -95,18 +93,11 @@ fn moves_cut_in_two_sweep_the_same() {
                     Turning::Rotary { table, to, .. } => table.axis(to),
                     _ => middle.axis.into(),
                 };
-                let course = match way.course {
-                    TipCourse::Straight => [TipCourse::Straight; 2],
-                    TipCourse::Arc(arc) => {
-                        let part = |share: f64| {
-                            let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
-                            TipCourse::Arc(
-                                TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"),
-                            )
-                        };
-                        [part(cut), part(1.0 - cut)]
-                    }
+                let part = |share: f64| {
+                    way.course
+                        .map_arc(|arc| TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc"))
                 };
+                let course = [part(cut), part(1.0 - cut)];
                 poses.extend([pose(middle.tip.into(), axis), end]);
                 halves.extend([0, 1].map(|i| Move {
                     course: course[i],
@@ -129,16 +120,10 @@ fn a_right_angle_about_z_turns_the_volume() {
     for named in motions() {
         let Some(moves) = moves(&named.path) else { continue };
         let turned = moves.iter().map(|way| Move {
-            course: match way.course {
-                TipCourse::Straight => TipCourse::Straight,
-                TipCourse::Arc(arc) => {
-                    let normal = Vector3::from(arc.normal());
-                    TipCourse::Arc(
-                        TipArc::new(quarter(Vector3::from(arc.centre())), quarter(normal), arc.angle())
-                            .expect("an arc"),
-                    )
-                }
-            },
+            course: way.course.map_arc(|arc| {
+                let [centre, normal] = [arc.centre(), arc.normal()].map(|v| quarter(Vector3::from(v)));
+                TipArc::new(centre, normal, arc.angle()).expect("an arc")
+            }),
             turning: match way.turning {
                 // A turn by 90° about z is one of the table, which turns the part the other way.
                 Turning::Rotary { table, from, to } => Turning::Rotary {

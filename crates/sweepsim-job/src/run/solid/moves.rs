@@ -72,12 +72,13 @@ pub(super) fn left_by(tool: &[Piece], path: &Path, number: usize) -> Vec<Surface
     };
     let axis = from.axis();
     let turned = cross(axis, to.axis());
-    if !still || dot(turned, turned) > SAME * SAME || dot(axis, to.axis()) < 0.0 {
+    let is_carried = matches!(way.course, TipCourse::Carried(_));
+    if is_carried || !still || dot(turned, turned) > SAME * SAME || dot(axis, to.axis()) < 0.0 {
         all.extend(swept(tool, path, number, false));
         return all;
     }
     match way.course {
-        TipCourse::Straight => {
+        TipCourse::Straight | TipCourse::Carried(_) => {
             if let Some(ahead) = unit(sub(to.tip(), from.tip())) {
                 tool.iter()
                     .for_each(|piece| all.extend(straight(*piece, from.tip(), axis, ahead)));

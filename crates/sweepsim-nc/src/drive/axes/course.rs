@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::Vector3;
 use sweepsim_machine::{Course, JOINTS, Values};
 use sweepsim_motion::{Pose, TipArc, TipCourse};
 
@@ -102,7 +102,7 @@ impl AxesCourse {
         let turns = from.abc != to.abc;
         let arc = match end.way().course {
             TipCourse::Arc(arc) => Some(arc),
-            TipCourse::Straight => None,
+            TipCourse::Straight | TipCourse::Carried(_) => None,
         };
         let even = !end.tip_control && arc.is_none();
         let bent = (arc.is_some() || turns && !even).then(|| Bent::new(&self.machine, (start, from), (end, to), arc));
@@ -282,22 +282,10 @@ impl Bent {
     }
 
     fn at(&self, machine: &Kinematics, time: f64) -> Position {
-        let [a, b] = self.tips.map(Vector3::from);
-        let tip = match &self.arc {
-            None => a + (b - a) * time,
-            Some(arc) => {
-                let (centre, normal) = (
-                    Vector3::from(arc.centre()),
-                    Unit::new_normalize(Vector3::from(arc.normal())),
-                );
-                let turned =
-                    |time: f64| centre + Rotation3::from_axis_angle(&normal, time * arc.angle()) * (a - centre);
-                // What is missing at the end, a helix's rise above all, is spread over the move.
-                turned(time) + (b - turned(1.0)) * time
-            }
-        };
+        let course = self.arc.map_or(TipCourse::Straight, TipCourse::Arc);
+        let tip = course.tip(self.tips, time);
         let abc = self.from.towards(&self.to, time).abc;
-        Position::new(machine.linear_at(tip.into(), abc, self.tool_length), abc)
+        Position::new(machine.linear_at(tip, abc, self.tool_length), abc)
     }
 }
 

@@ -205,7 +205,7 @@ impl<'a> Dynamics<'a> {
     fn way(&self, from: &ProgramPose, to: &ProgramPose, ends: [&Position; 2]) -> Option<Way> {
         let turn = Vector3::from(ends[1].abc) - Vector3::from(ends[0].abc);
         let way = match to.way().course {
-            TipCourse::Straight => {
+            TipCourse::Straight | TipCourse::Carried(_) => {
                 let shift = Vector3::from(ends[1].xyz) - Vector3::from(ends[0].xyz);
                 self.straight(&joined(&(self.directions[0] * shift), &turn))
             }

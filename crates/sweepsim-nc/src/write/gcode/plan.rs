@@ -2,15 +2,17 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Vector3;
 use sweepsim_motion::{Pose, TipArc, TipCourse, Turning};
 
-use super::arcs::{chords, in_plane, is_whole};
+use super::arcs::{in_plane, is_whole};
 use super::steps::{Aim, Block, Language, PlaneArc, Step};
 use super::{GcodeError, GcodeOptions, number};
 use crate::machines::{Kinematics, Position};
 use crate::model::event::EventKind;
 use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::model::read_options::Controller;
+use crate::write::chords::chords;
 
 /// An axis nearer to Z than this points up.
 const UPRIGHT: f64 = 1e-12;
@@ -189,8 +191,12 @@ impl<'a> Plan<'a> {
     fn go(&mut self, index: usize, pose: &ProgramPose, language: &mut impl Language) -> Result<(), GcodeError> {
         let from = self.at.filter(|_| pose.joined);
         let to = self.place(index, &pose.pose)?;
-        if let (TipCourse::Arc(arc), Some(from)) = (pose.way().course, from) {
-            return self.arc(index, &arc, from, to, language);
+        match (pose.way().course, from) {
+            (TipCourse::Arc(arc), Some(from)) => return self.arc(index, &arc, from, to, language),
+            (TipCourse::Carried(arc), Some(from)) if !self.carries(&arc, [&from, &to]) => {
+                return self.chords(index, (from, to), language);
+            }
+            _ => {}
         }
         if pose.joined
             && self.machine.is_none()
@@ -260,19 +266,7 @@ impl<'a> Plan<'a> {
             in_plane(arc, from.pose.tip(), &along)
         });
         let Some(found) = flat.flatten().filter(|found| self.has_plane(found)) else {
-            let tolerance = self.options.arc_tolerance;
-            self.lose(&format!(
-                "arcs across no axis of the plane, or along which the tool turns: chords within {tolerance} mm"
-            ));
-            let poses = chords(arc, &from.pose, &to.pose, tolerance);
-            let part = 1.0 / poses.len() as f64;
-            let mut before = from;
-            for next in poses {
-                let place = self.place(index, &next)?;
-                self.straight(pose, Some(before), place, part, language);
-                before = place;
-            }
-            return Ok(());
+            return self.chords(index, (from, to), language);
         };
         let (u, v) = ((found.w + 1) % 3, (found.w + 2) % 3);
         let apart = |a: [f64; 3], b: [f64; 3]| a[u] != b[u] || a[v] != b[v];
@@ -319,6 +313,46 @@ impl<'a> Plan<'a> {
             self.step(&Step::Move(block), language);
         }
         self.at = Some(end);
+        Ok(())
+    }
+
+    /// Whether a block of the machine's axes turns its table so.
+    fn carries(&self, arc: &TipArc, ends: [&ToolPosition; 2]) -> bool {
+        let (Some(machine), [Aim::Angles(from), Aim::Angles(to)]) = (self.machine, ends.map(|end| end.aim)) else {
+            return false;
+        };
+        let turn = |arc: &TipArc| Vector3::from(arc.normal()) * arc.angle();
+        let own = machine.carries(from, to).filter(|_| !self.options.tip_control);
+        own.is_some_and(|own| {
+            let off = Vector3::from(own.centre()) - Vector3::from(arc.centre());
+            let apart = Vector3::from(arc.normal()).cross(&off).norm();
+            apart < 1e-9 * (1.0 + off.norm()) && (turn(&own) - turn(arc)).norm() < 1e-9
+        })
+    }
+
+    /// A move that is no line and no arc of the control, as chords.
+    fn chords(
+        &mut self,
+        index: usize,
+        (from, to): (ToolPosition, ToolPosition),
+        language: &mut impl Language,
+    ) -> Result<(), GcodeError> {
+        let tolerance = self.options.arc_tolerance;
+        let pose = &self.program.poses[index];
+        let course = pose.way().course;
+        let what = match course {
+            TipCourse::Carried(_) => "moves while the table turns",
+            _ => "arcs across no axis of the plane, or along which the tool turns",
+        };
+        self.lose(&format!("{what}: chords within {tolerance} mm"));
+        let poses = chords(&course, &from.pose, &to.pose, tolerance);
+        let part = 1.0 / poses.len() as f64;
+        let mut before = from;
+        for next in poses {
+            let place = self.place(index, &next)?;
+            self.straight(pose, Some(before), place, part, language);
+            before = place;
+        }
         Ok(())
     }
 

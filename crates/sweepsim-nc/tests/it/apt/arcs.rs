@@ -10,7 +10,7 @@ fn angle(text: &str) -> f64 {
     let program = exact(text);
     match program.poses.last().unwrap().way().course {
         TipCourse::Arc(arc) => arc.angle(),
-        TipCourse::Straight => 0.0,
+        _ => 0.0,
     }
 }
 

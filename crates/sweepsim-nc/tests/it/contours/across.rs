@@ -85,7 +85,7 @@ fn round_corners_lie_in_the_plane_of_the_contour() {
             assert_near(&tips(&program), &expected);
             let arcs = program.poses.iter().filter_map(|pose| match pose.way().course {
                 TipCourse::Arc(arc) => Some(arc.normal()),
-                TipCourse::Straight => None,
+                _ => None,
             });
             let normals: Vec<[f64; 3]> = arcs.collect();
             assert_eq!(normals.len(), 1, "{text}");
