@@ -330,16 +330,13 @@ impl Shell for Cylinder {
         let [s, k] = at.tilt;
         let zeta = (q + k * alpha) * at.inverse;
         let (va, vb) = (at.travel[0] + at.rate[0] * zeta, at.travel[1] + at.rate[1] * zeta);
-        let x = alpha * at.rate[0] + delta * at.rate[1];
-        let y = alpha * at.bend[0] + delta * at.bend[1];
-        let accelerates = alpha * at.acceleration[0] + delta * at.acceleration[1];
+        let seen = |v: [f64; 2]| alpha * v[0] + delta * v[1];
+        let (x, y) = (seen(at.rate), seen(at.acceleration) + zeta * seen(at.bend));
         let rise = meeting.g[sheet] / (s * alpha);
         let around = alpha * vb - delta * va;
         // The point slides along the surface.
         let slides = -alpha * vb - delta * (rise * s - va);
-        let slope = slides * around / (self.radius * self.radius)
-            + (accelerates + zeta * y)
-            + x * (rise * k - 2.0 * at.travel[2] + x);
+        let slope = slides * around / (self.radius * self.radius) + y + x * (rise * k - 2.0 * at.travel[2] + x);
         [slope, rise]
     }
 

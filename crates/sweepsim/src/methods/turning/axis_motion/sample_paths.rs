@@ -43,25 +43,23 @@ pub fn path(kind: usize, [from, to]: [(Place, Place); 2]) -> Option<Path> {
             let arc = TipArc::between(from.0, to.0, centre, [0.0, 0.0, 1.0], 1).ok()?;
             one([pose(from), pose(to)], Move::arc(arc))
         }
-        // A tip that turns with the part about z, and rises.
+        // A tool that goes straight while a table turns the part about z.
         4 => {
             let [[tilt, round], _] = angles;
             let angle = 40.0 * (to.0[0] - from.0[0]).sin();
-            let turned = |[x, y, _]: Place| {
-                let (s, c) = (-angle).to_radians().sin_cos();
-                [c * x - s * y, s * x + c * y, to.0[2]]
-            };
-            let turning = Turning::Rotary {
-                table,
-                from: [tilt, round],
-                to: [tilt, round + angle],
-            };
+            let (s, c) = (-angle).to_radians().sin_cos();
+            let [x, y, z] = [0, 1, 2].map(|k| from.0[k] + 0.3 * (to.0[k] - from.0[k]));
             let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], (-angle).to_radians()).ok()?;
             let way = Move {
-                course: TipCourse::Arc(arc),
-                turning,
+                course: TipCourse::Carried(arc),
+                turning: Turning::Rotary {
+                    table,
+                    from: [tilt, round],
+                    to: [tilt, round + angle],
+                },
             };
-            let last = pose((turned(from.0), table.axis([tilt, round + angle])));
+            let turned = [c * x - s * y, s * x + c * y, z];
+            let last = pose((turned, table.axis([tilt, round + angle])));
             one([pose(from), last], way)
         }
         // Quaternions and a rational tip.
