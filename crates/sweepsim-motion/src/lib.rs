@@ -19,7 +19,7 @@ pub use boundary::{Edge, Fold, NormalField, Patch, PatchError, Revolved, Side, T
 pub use packed::PackedRows;
 pub use path::{
     ArcError, Law, Move, OtherCourse, OtherCourses, PackedMoves, PackedPoses, Path, PathBuilder, PathError,
-    RotaryTable, TipArc, TipCourse, Turning, UnknownTable,
+    RotaryTable, TableTurns, TipArc, TipCourse, Turning, UnknownTable,
 };
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};

@@ -263,14 +263,27 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
             tip_speed = round * (p0 - centre).cross(&normal).norm() + missing.norm();
             tip = Shared::new(move |t| turned(t) + missing * t);
         }
-        TipCourse::Carried(arc) => {
+        TipCourse::Carried(turns) => {
             // Straight in the frame of the table.
-            let (centre, turn) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()) * arc.angle());
-            let seen = [p0 - centre, Rotation3::from_scaled_axis(-turn) * (p1 - centre)];
-            round = turn.norm();
-            let lever = seen.map(|point| turn.cross(&point).norm());
-            tip_speed = lever[0].max(lever[1]) + (seen[1] - seen[0]).norm();
-            tip = Shared::new(move |t| centre + Rotation3::from_scaled_axis(turn * t) * seen[0].lerp(&seen[1], t));
+            let about = |arc: &sweepsim_motion::TipArc, part: f64, point: Vector3<f64>| {
+                let (centre, turn) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()) * arc.angle());
+                centre + Rotation3::from_scaled_axis(turn * part) * (point - centre)
+            };
+            let all: Vec<_> = turns.turns().copied().collect();
+            let back = all.iter().fold(p1, |point, arc| about(arc, -1.0, point));
+            round = all.iter().map(|arc| arc.angle().abs()).fold(0.0, f64::max);
+            // Each turn moves points at most as far away as all that is within it allows.
+            let mut speed = (back - p0).norm();
+            for arc in all.iter().rev() {
+                let turn = Vector3::from(arc.normal()) * arc.angle();
+                speed += turn.cross(&(p0 - Vector3::from(arc.centre()))).norm() + turn.norm() * speed;
+            }
+            tip_speed = speed;
+            tip = Shared::new(move |t| {
+                all.iter()
+                    .rev()
+                    .fold(p0.lerp(&back, t), |point, arc| about(arc, t, point))
+            });
         }
     }
     let axis: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;

@@ -73,15 +73,13 @@ impl Path {
         let poses = self.poses_in_order(0).zip(self.poses_in_order(1));
         let moves = self.ways_in_order().zip(poses);
         moves.fold(ends, |size, (way, (from, to))| {
-            let Some(arc) = way.course.arc() else { return size };
-            let from = from.tip_vector();
-            let radius = arc.radius_vector(from).norm();
-            let farthest = match way.course {
-                TipCourse::Carried(_) => radius.max(arc.radius_vector(to.tip_vector()).norm()),
-                _ => radius,
-            };
-            // A circle, the rise, and what the rise is measured from.
-            size.max(from.norm() + radius + farthest + 2.0 * ends)
+            let (from, to) = (from.tip_vector(), to.tip_vector());
+            size.max(match way.course {
+                TipCourse::Straight => 0.0,
+                // A circle, the rise, and what the rise is measured from.
+                TipCourse::Arc(arc) => from.norm() + 2.0 * arc.radius_vector(from).norm() + 2.0 * ends,
+                TipCourse::Carried(turns) => from.norm() + turns.travel(from, to),
+            })
         })
     }
 }

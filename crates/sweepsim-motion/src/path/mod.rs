@@ -11,16 +11,14 @@ mod other_courses;
 mod packed_moves;
 mod placed;
 mod rotary;
-mod tip_arc;
 
 pub use builder::PathBuilder;
 pub use compact::PackedPoses;
 pub use error::PathError;
-pub use moves::{Law, Move, TipCourse, Turning};
+pub use moves::{ArcError, Law, Move, TableTurns, TipArc, TipCourse, Turning};
 pub use other_courses::{OtherCourse, OtherCourses};
 pub use packed_moves::PackedMoves;
 pub use rotary::{RotaryTable, UnknownTable};
-pub use tip_arc::{ArcError, TipArc};
 
 use crate::pose::Pose;
 use crate::segment::Segment;

@@ -1,6 +1,6 @@
 //! Moves of long paths, packed.
 
-use super::{Move, RotaryTable, TipArc, TipCourse, Turning};
+use super::{Move, RotaryTable, TableTurns, TipArc, TipCourse, Turning};
 use crate::packed::PackedRows;
 use std::ops::Range;
 
@@ -18,14 +18,17 @@ use std::ops::Range;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackedMoves {
-    /// Kind, centre, normal and angle of an arc, and the angles of rotary axes. Straight moves repeat what the move
+    /// Kind, centre, normal and angle of an arc, the angles of rotary axes, and another arc. Straight moves repeat what the move
     /// before had.
-    rows: PackedRows<12>,
-    last: [f64; 12],
+    rows: PackedRows<19>,
+    last: [f64; 19],
 }
 
 const ARC: u8 = 8;
 const CARRIED: u8 = 16;
+const CARRIED_TWICE: u8 = 24;
+/// Where the numbers of arcs begin.
+const ARCS: [usize; 2] = [1, 12];
 /// Of the kinds of turning.
 const TURNING: u8 = ARC - 1;
 
@@ -33,7 +36,7 @@ impl Default for PackedMoves {
     fn default() -> Self {
         Self {
             rows: PackedRows::default(),
-            last: [0.0; 12],
+            last: [0.0; 19],
         }
     }
 }
@@ -47,23 +50,34 @@ impl PackedMoves {
             Turning::Even => 1,
             Turning::Rotary { table, from, to } => {
                 row[8..10].copy_from_slice(&from);
-                row[10..].copy_from_slice(&to);
+                row[10..12].copy_from_slice(&to);
                 match table {
                     RotaryTable::Ac => 2,
                     RotaryTable::Bc => 3,
                 }
             }
         };
-        if let Some(arc) = way.course.arc() {
-            row[1..4].copy_from_slice(&arc.centre());
-            row[4..7].copy_from_slice(&arc.normal());
-            row[7] = arc.angle();
-        }
-        kind |= match way.course {
+        let arcs = match &way.course {
+            TipCourse::Straight => [None; 2],
+            TipCourse::Arc(arc) => [Some(arc), None],
+            TipCourse::Carried(turns) => {
+                let mut turns = turns.turns();
+                [turns.next(), turns.next()]
+            }
+        };
+        kind |= match &way.course {
             TipCourse::Straight => 0,
             TipCourse::Arc(_) => ARC,
-            TipCourse::Carried(_) => CARRIED,
+            TipCourse::Carried(_) if arcs[1].is_none() => CARRIED,
+            TipCourse::Carried(_) => CARRIED_TWICE,
         };
+        for (arc, first) in arcs.into_iter().zip(ARCS) {
+            if let Some(arc) = arc {
+                let [x, y, z] = arc.centre();
+                let [i, j, k] = arc.normal();
+                row[first..first + 7].copy_from_slice(&[x, y, z, i, j, k, arc.angle()]);
+            }
+        }
         row[0] = f64::from(kind);
         self.last = row;
         self.rows.push(row);
@@ -96,25 +110,29 @@ impl PackedMoves {
 /// Gives up the memory of the moves as they are taken.
 impl IntoIterator for PackedMoves {
     type Item = Move;
-    type IntoIter = std::iter::Map<<PackedRows<12> as IntoIterator>::IntoIter, fn([f64; 12]) -> Move>;
+    type IntoIter = std::iter::Map<<PackedRows<19> as IntoIterator>::IntoIter, fn([f64; 19]) -> Move>;
 
     fn into_iter(self) -> Self::IntoIter {
-        self.rows.into_iter().map(of_way_row as fn([f64; 12]) -> Move)
+        self.rows.into_iter().map(of_way_row as fn([f64; 19]) -> Move)
     }
 }
 
-fn of_way_row(row: [f64; 12]) -> Move {
+fn of_way_row(row: [f64; 19]) -> Move {
     let kind = row[0] as u8;
     let rotary = |table| Turning::Rotary {
         table,
         from: [row[8], row[9]],
         to: [row[10], row[11]],
     };
-    let arc = TipArc::of_parts([row[1], row[2], row[3]], [row[4], row[5], row[6]], row[7]);
+    let [arc, other] = ARCS.map(|first| {
+        let at = |k: usize| std::array::from_fn(|i| row[first + k + i]);
+        TipArc::of_parts(at(0), at(3), row[first + 6])
+    });
     Move {
         course: match kind & !TURNING {
             ARC => TipCourse::Arc(arc),
-            CARRIED => TipCourse::Carried(arc),
+            CARRIED => TipCourse::Carried(TableTurns::new(arc)),
+            CARRIED_TWICE => TipCourse::Carried(TableTurns::new(arc).on(other)),
             _ => TipCourse::Straight,
         },
         turning: match kind & TURNING {

@@ -82,7 +82,7 @@ impl Placed {
     pub fn way(&self, index: usize) -> Move {
         let own = self.own.way(index);
         Move {
-            course: own.course.map_arc(|arc| arc.moved(&self.turn, self.shift)),
+            course: own.course.moved(&self.turn, self.shift),
             ..own
         }
     }

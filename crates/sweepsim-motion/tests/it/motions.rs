@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use sweepsim_motion::{
-    ArcError, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion, TipArc,
-    TipCourse, Turning,
+    ArcError, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion,
+    TableTurns, TipArc, TipCourse, Turning,
 };
 use sweepsim_props::*;
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
@@ -33,15 +33,17 @@ fn law(from: &Pose, to: &Pose, way: &Move, time: f64) -> (Vector3<f64>, Vector3<
             };
             turned(time) + (Vector3::from(to.tip()) - turned(1.0)) * time
         }
-        TipCourse::Carried(arc) => {
+        TipCourse::Carried(turns) => {
             // Where the table has turned back, the tool goes straight.
-            let back = |part: f64, point: [f64; 3]| {
-                let turn = Rotation3::from_scaled_axis(Vector3::from(arc.normal()) * (-arc.angle() * part));
-                turn * (Vector3::from(point) - Vector3::from(arc.centre()))
+            let about = |arc: &TipArc, part: f64, point: Vector3<f64>| {
+                let turn = Rotation3::from_scaled_axis(Vector3::from(arc.normal()) * (arc.angle() * part));
+                Vector3::from(arc.centre()) + turn * (point - Vector3::from(arc.centre()))
             };
-            let seen = back(0.0, from.tip()).lerp(&back(1.0, to.tip()), time);
-            let turn = Rotation3::from_scaled_axis(Vector3::from(arc.normal()) * (arc.angle() * time));
-            Vector3::from(arc.centre()) + turn * seen
+            let back = turns
+                .turns()
+                .fold(Vector3::from(to.tip()), |point, arc| about(arc, -1.0, point));
+            let seen = Vector3::from(from.tip()).lerp(&back, time);
+            turns.turns().rev().fold(seen, |point, arc| about(arc, time, point))
         }
     };
     let axis = if let Turning::Rotary { table, from, to } = way.turning {
@@ -103,10 +105,14 @@ fn move_of(kind: usize, from: [f64; 3], to: [f64; 3], angles: [[f64; 2]; 2], axe
         2 | 3 => rotary(TipCourse::Straight),
         4 | 5 => rotary(TipCourse::Arc(arc())),
         6 => {
-            let (course, turning) = (TipCourse::Carried(arc()), Turning::Even);
+            let (course, turning) = (TipCourse::Carried(TableTurns::new(arc())), Turning::Even);
             Path::with_moves(plain()?, vec![Move { course, turning }]).ok()
         }
-        _ => rotary(TipCourse::Carried(arc())),
+        7 => rotary(TipCourse::Carried(TableTurns::new(arc()))),
+        _ => {
+            let other = TipArc::new([-3.0, 0.0, 2.0], [1.0, -0.3, 0.2], angles[1][0].to_radians()).ok()?;
+            rotary(TipCourse::Carried(TableTurns::new(arc()).on(other)))
+        }
     }
 }
 
@@ -155,7 +161,7 @@ proptest! {
 
     #[test]
     fn no_move_deviates_from_its_law_by_more_than_stated(
-        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..11, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]), limit in 1e-6..1e-2,
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -167,7 +173,7 @@ proptest! {
 
     #[test]
     fn rates_are_derivatives(
-        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..11, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]), t in 0.01..0.99,
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -213,7 +219,7 @@ proptest! {
     /// Parts of one move join without a kink: the velocity after is a positive multiple of that before.
     #[test]
     fn parts_join_smoothly(
-        kind in 0_usize..9, from in tip(), to in tip(), axes in [axis(), axis()],
+        kind in 0_usize..11, from in tip(), to in tip(), axes in [axis(), axis()],
         angles in prop::array::uniform2([-80.0..80.0, -400.0..400.0]),
     ) {
         let path = move_of(kind, from, to, angles, axes);
@@ -270,7 +276,13 @@ fn a_reversed_move_goes_through_the_same_placements() {
     let table = RotaryTable::Bc;
     let angles = [[20.0, -30.0], [50.0, 80.0]];
     let arc = TipArc::new([0.0; 3], [0.0, 0.3, 1.0], 2.0).unwrap();
-    for course in [TipCourse::Arc(arc), TipCourse::Carried(arc)] {
+    let other = TipArc::new([1.0, 0.0, -2.0], [1.0, 0.2, 0.0], -0.8).unwrap();
+    let turns = TableTurns::new(arc);
+    for course in [
+        TipCourse::Arc(arc),
+        TipCourse::Carried(turns),
+        TipCourse::Carried(turns.on(other)),
+    ] {
         let way = Move {
             course,
             turning: Turning::Rotary {
@@ -311,7 +323,7 @@ fn a_carried_tip_goes_along_a_spiral() {
     let arc = TipArc::new([1.0, 2.0, 0.0], [0.0, 0.0, 1.0], std::f64::consts::TAU).unwrap();
     let up = [0.0, 0.0, 1.0];
     let poses = [a, b].map(|r| Pose::new([1.0 + r, 2.0, 0.0], up).unwrap());
-    let course = TipCourse::Carried(arc);
+    let course = TipCourse::Carried(TableTurns::new(arc));
     let turning = Turning::Even;
     let path = Path::with_moves(poses.to_vec(), vec![Move { course, turning }]).unwrap();
     let parts = path.segments(0, REACH, 1e-6);

@@ -1,6 +1,8 @@
 //! Packed rows and paths hold what was put in, to the last bit.
 
-use sweepsim_motion::{Law, Move, PackedRows, Path, PathBuilder, Pose, RotaryTable, TipArc, TipCourse, Turning};
+use sweepsim_motion::{
+    Law, Move, PackedRows, Path, PathBuilder, Pose, RotaryTable, TableTurns, TipArc, TipCourse, Turning,
+};
 use sweepsim_props::*;
 
 /// Numbers as programs have them, and any others.
@@ -94,8 +96,11 @@ fn course(count: usize, turns: bool) -> (Vec<Pose>, Vec<Move>) {
             );
             moves.push(match arc {
                 Ok(arc) if k > count / 2 && k % 7 == 0 => Move::arc(arc),
-                Ok(arc) if k > count / 2 && k % 7 == 1 => Move {
-                    course: TipCourse::Carried(arc),
+                Ok(arc) if k > count / 2 && k % 7 <= 2 => Move {
+                    course: TipCourse::Carried(match k % 7 {
+                        1 => TableTurns::new(arc),
+                        _ => TableTurns::new(arc).on(arc.reversed()),
+                    }),
                     turning: Turning::Even,
                 },
                 _ if k % 11 == 0 => Move::straight(Turning::Even),

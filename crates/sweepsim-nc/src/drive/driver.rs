@@ -344,17 +344,17 @@ impl Driver {
         Ok(course)
     }
 
-    /// The move of a tool that goes straight while one axis of the table turns it: one of which no point is a chord.
+    /// The move of a tool that goes straight while the table turns the part.
     fn carried(&mut self, from: [f64; 3], to: [f64; 3], coordinates: Coordinates) -> Result<Option<Move>, NcProblem> {
-        let arc = match (coordinates, &self.kinematics) {
+        let turns = match (coordinates, &self.kinematics) {
             (Coordinates::Axes, Some(kinematics)) if self.carries => kinematics.carries(from, to),
             _ => None,
         };
-        let Some(arc) = arc else { return Ok(None) };
+        let Some(turns) = turns else { return Ok(None) };
         // A tool along the axis of the turn keeps its direction: chords of its path are solved faster.
         Ok(match self.turning(from, to, coordinates)? {
             turning @ Turning::Rotary { .. } => Some(Move {
-                course: TipCourse::Carried(arc),
+                course: TipCourse::Carried(turns),
                 turning,
             }),
             Turning::Slerp | Turning::Even => None,

@@ -1,7 +1,7 @@
 //! From positions of the axes to poses of the tool.
 
 use nalgebra::{Matrix3, Unit, Vector3};
-use sweepsim_motion::{Pose, PoseError, TipArc};
+use sweepsim_motion::{Pose, PoseError, TableTurns, TipArc};
 
 use super::description::{LinearAxis, MachineDescription, Position, Rapid, RotaryAxis, check, check_axis};
 use super::error::MachineError;
@@ -339,20 +339,24 @@ impl Kinematics {
         (self.inverse_directions * turned).into()
     }
 
-    /// The turn, in the part's frame, by which the table carries the part while one of its axes moves between two positions and no other rotary axis does:
-    /// the tip goes straight in the frame that turns so. `None` if the part does not turn, or turns otherwise.
-    pub(crate) fn carries(&self, from: [f64; 3], to: [f64; 3]) -> Option<TipArc> {
+    /// The turns, in the part's frame, by which the table carries the part between two positions, while no axis of the head turns: the tip goes straight
+    /// in the frame that turns so. `None` if the part does not turn, or the head does.
+    pub(crate) fn carries(&self, from: [f64; 3], to: [f64; 3]) -> Option<TableTurns> {
         let turns = |joint: &Joint| from[joint.letter] != to[joint.letter];
-        let number = self.table.iter().position(turns)?;
-        let alone = self.table.iter().chain(&self.head).filter(|joint| turns(joint)).count() == 1;
-        let joint = &self.table[number];
-        // Those nearer to the part, which stand still.
-        let within = self.table[..number].iter().rev();
-        let ends = [joint.pivot, joint.pivot + joint.axis.into_inner()];
-        let [centre, above] = ends.map(|point| within.clone().fold(point, |point, own| own.turn(point, from, 0.0)));
-        let angle = (to[joint.letter] - from[joint.letter]).to_radians();
-        let turn = TipArc::new(centre.into(), (above - centre).into(), angle).ok();
-        turn.filter(|_| alone)
+        let one = |(number, joint): (usize, &Joint)| {
+            // Through the axes that are nearer to the part, where they are at the start.
+            let within = self.table[..number].iter().rev();
+            let ends = [joint.pivot, joint.pivot + joint.axis.into_inner()];
+            let [centre, above] = ends.map(|point| within.clone().fold(point, |point, own| own.turn(point, from, 0.0)));
+            let angle = (to[joint.letter] - from[joint.letter]).to_radians();
+            TipArc::new(centre.into(), (above - centre).into(), angle).ok()
+        };
+        let mut all = self.table.iter().enumerate().filter(|(_, joint)| turns(joint)).map(one);
+        let first = all.next().flatten().filter(|_| !self.head.iter().any(turns))?;
+        match all.next() {
+            None => Some(TableTurns::new(first)),
+            Some(second) => Some(TableTurns::new(first).on(second?)),
+        }
     }
 
     /// The number of chords within `tolerance` of the tip's course while all axes move at constant speed.

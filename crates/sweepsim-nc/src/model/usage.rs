@@ -135,8 +135,9 @@ fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
     let arc = match to.way().course {
         TipCourse::Straight => return ends,
         TipCourse::Arc(arc) => arc,
-        course @ TipCourse::Carried(arc) => {
-            let samples = (256.0 * arc.angle().abs() / TAU).ceil().max(4.0);
+        course @ TipCourse::Carried(turns) => {
+            let angle: f64 = turns.turns().map(|turn| turn.angle().abs()).sum();
+            let samples = (256.0 * angle / TAU).ceil().max(4.0);
             return sampled_extent(samples as usize, |time| course.tip([a, b], time));
         }
     };

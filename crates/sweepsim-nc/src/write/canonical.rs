@@ -2,7 +2,7 @@
 
 use std::io::{Result, Write};
 
-use sweepsim_motion::TipCourse;
+use sweepsim_motion::{TipArc, TipCourse};
 
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
@@ -82,18 +82,20 @@ fn of_pose(pose: &ProgramPose, unit: f64) -> String {
             format!("feed {}{per}", shortest(feed))
         }
     };
-    let course = pose.way().course;
-    let word = match course {
-        TipCourse::Carried(_) => " carried",
-        _ => "",
-    };
-    let arc = match course.arc() {
-        Some(arc) if pose.joined => format!(
-            "{word} about ({}) normal ({}) by {} deg",
+    let about = |arc: &TipArc| {
+        format!(
+            " about ({}) normal ({}) by {} deg",
             words(arc.centre()),
             words(arc.normal()),
             shortest(arc.angle().to_degrees())
-        ),
+        )
+    };
+    let arc = match pose.way().course {
+        TipCourse::Arc(arc) if pose.joined => about(&arc),
+        TipCourse::Carried(turns) if pose.joined => {
+            let turns: String = turns.turns().map(about).collect();
+            format!(" carried{turns}")
+        }
         _ => String::new(),
     };
     format!(

@@ -172,7 +172,7 @@ proptest! {
     }
 }
 
-/// While one axis of a table turns, a block is one move, in which the tool is where the machine's axes put it, to the last digits; and so it is when it is
+/// While a table turns, a block is one move, in which the tool is where the machine's axes put it, to the last digits; and so it is when it is
 /// posted again, as one block for the same machine and in chords under tip control.
 #[test]
 fn a_table_carries_the_part() {
@@ -190,9 +190,11 @@ fn a_table_carries_the_part() {
             .rotary()
             .map(|axis| "ABC".find(axis.letter).unwrap())
             .collect();
-        for turning in &axes {
+        // Each of them alone, and all together.
+        let together = (axes.len() == 2).then(|| axes.clone());
+        for turning in axes.iter().map(|axis| vec![*axis]).chain(together) {
             let mut positions = ends.map(|(xyz, abc)| Position::new(xyz, abc));
-            for k in (0..3).filter(|k| k != turning) {
+            for k in (0..3).filter(|k| !turning.contains(k)) {
                 let kept = if axes.contains(&k) { ends[0].1[k] } else { 0.0 };
                 positions.iter_mut().for_each(|position| position.abc[k] = kept);
             }
@@ -217,7 +219,8 @@ fn a_table_carries_the_part() {
                 continue;
             };
             assert_eq!((read.poses.len(), last.feed), (2, Some(2.0)), "{name}");
-            carried.push((*name, ["A", "B", "C"][*turning]));
+            let letters: String = turning.iter().map(|&k| ["A", "B", "C"][k]).collect();
+            carried.push(format!("{name} {letters}"));
             let poses = read.poses.iter().map(|pose| pose.pose).collect();
             let path = Path::with_moves(poses, vec![last.way()]).unwrap();
             let segments = path.segments(0, 100.0, 1e-9);
@@ -240,7 +243,10 @@ fn a_table_carries_the_part() {
                     write::gcode(&read, &write::GcodeOptions::for_machine(machine.clone(), tip_control)).unwrap();
                 let again = gcode::read(&posted.text, &options).unwrap();
                 // A turn of more than half a turn is not the nearest one.
-                let is_block = !tip_control && (positions[1].abc[*turning] - positions[0].abc[*turning]).abs() < 180.0;
+                let is_block = !tip_control
+                    && turning
+                        .iter()
+                        .all(|&k| (positions[1].abc[k] - positions[0].abc[k]).abs() < 180.0);
                 assert_eq!(again.poses.len() == 2, is_block, "{name} {}", posted.text);
                 let own = again.poses.last().unwrap();
                 assert!(
@@ -260,15 +266,17 @@ fn a_table_carries_the_part() {
         }
     }
     let expected = [
-        ("rotary-a", "A"),
-        ("rotary-b", "B"),
-        ("trunnion-ac", "C"),
-        ("trunnion-ac", "A"),
-        ("trunnion-bc", "C"),
-        ("trunnion-bc", "B"),
-        ("head-b-table-c", "C"),
-        ("head-a-table-c", "C"),
-        ("mill-turn", "C"),
+        "rotary-a A",
+        "rotary-b B",
+        "trunnion-ac C",
+        "trunnion-ac A",
+        "trunnion-ac CA",
+        "trunnion-bc C",
+        "trunnion-bc B",
+        "trunnion-bc CB",
+        "head-b-table-c C",
+        "head-a-table-c C",
+        "mill-turn C",
     ];
     assert_eq!(carried, expected);
 }

@@ -5,7 +5,7 @@ use crate::brute_force::corpus::lean;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, SplineMotion, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, SplineMotion, TableTurns, TipArc, TipCourse, Turning};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 use sweepsim_tests::oracle::{Motion, Place, Placement};
 
@@ -52,10 +52,9 @@ fn rotary(name: &str, table: RotaryTable, places: &[([f64; 3], [f64; 2])]) -> Na
     named(name, poses.collect(), moves.collect())
 }
 
-/// A tool that goes straight by `way` from `(0, 1.5, 1)` in the machine, while one axis of a table turns.
+/// A tool that goes straight by `way` from `(0, 1.5, 1)` in the machine, while a table turns.
 fn carried(name: &str, from: [f64; 2], to: [f64; 2], [pivot, way]: [[f64; 3]; 2]) -> Named {
     let table = RotaryTable::Ac;
-    let axis = if from[0] == to[0] { UP } else { [1.0, 0.0, 0.0] };
     let turned = |angles: [f64; 2], point: Vector3<f64>| table.orientation(angles) * point + Vector3::from(pivot);
     let start = Vector3::new(0.0, 1.5, 1.0);
     let tips = [turned(from, start), turned(to, start + Vector3::from(way))];
@@ -63,8 +62,14 @@ fn carried(name: &str, from: [f64; 2], to: [f64; 2], [pivot, way]: [[f64; 3]; 2]
         pose(tips[0].into(), table.axis(from)),
         pose(tips[1].into(), table.axis(to)),
     ];
-    let angle = [0, 1].map(|k| from[k] - to[k]).iter().sum::<f64>().to_radians();
-    let course = TipCourse::Carried(TipArc::new(pivot, axis, angle).expect("an arc"));
+    // C about z of the part, and the tilt about what C has made of x.
+    let tilting: [f64; 3] = (table.orientation([0.0, from[1]]) * Vector3::x()).into();
+    let [tilt, c] = [(0, tilting), (1, UP)].map(|(k, axis)| TipArc::new(pivot, axis, (from[k] - to[k]).to_radians()));
+    let course = TipCourse::Carried(match (tilt, c) {
+        (Ok(tilt), Ok(c)) => TableTurns::new(c).on(tilt),
+        (Ok(one), _) | (_, Ok(one)) => TableTurns::new(one),
+        _ => panic!("a turn"),
+    });
     let turning = Turning::Rotary { table, from, to };
     named(name, poses, vec![Move { course, turning }])
 }
@@ -311,6 +316,12 @@ pub fn motions() -> Vec<Named> {
             [-35.0, 20.0],
             [-35.0, 150.0],
             [o, [0.4, 0.6, -0.3]],
+        ),
+        carried(
+            "a table about z and x",
+            [-20.0, 10.0],
+            [35.0, -80.0],
+            [[0.3, 0.2, 0.0], [0.4, -0.6, 0.3]],
         ),
         bezier(
             "spline motion, quadratic",

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 use sweepsim::{Method, Sweep};
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Move, Path, Pose, RotaryTable, TipArc, TipCourse, Tool, Turning};
+use sweepsim_motion::{Move, Path, Pose, RotaryTable, TableTurns, TipArc, TipCourse, Tool, Turning};
 use sweepsim_props::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use sweepsim_props::*;
 use sweepsim_tests::oracle::Motion;
@@ -63,11 +63,7 @@ impl Drawn {
             }
             other => [other; 2],
         };
-        let share = |share: f64| {
-            let part = |arc: &TipArc| TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc");
-            moves[0].course.map_arc(part)
-        };
-        let course = [part, 1.0 - part].map(share);
+        let course = [[0.0, part], [part, 1.0]].map(|times| moves[0].course.during(times));
         let axis = match turning[0] {
             Turning::Rotary { table, to, .. } => table.axis(to),
             _ => middle.axis.into(),
@@ -93,10 +89,7 @@ impl Drawn {
             Self::Moves(poses, moves) => {
                 let place = |p: &Pose| pose((Vector3::from(p.tip()) + by).into(), p.axis());
                 let shift = |way: &Move| Move {
-                    course: way.course.map_arc(|arc| {
-                        let centre = Vector3::from(arc.centre()) + by;
-                        TipArc::new(centre.into(), arc.normal(), arc.angle()).expect("an arc")
-                    }),
+                    course: way.course.moved(&Matrix3::identity(), by),
                     turning: way.turning,
                 };
                 Path::with_moves(poses.iter().map(place).collect(), moves.iter().map(shift).collect()).expect("a path")
@@ -139,24 +132,21 @@ fn moves() -> impl Strategy<Value = Drawn> {
     });
     let angles = prop::array::uniform2((-50.0..50.0, -120.0..120.0));
     let arc = || (place(), prop_oneof![Just([0.0, 0.0, 1.0]), axis(0.0..90.0)], -5.0..5.0);
-    let rotary = (
-        any::<bool>(),
-        place(),
-        place(),
-        angles,
-        prop::option::of((arc(), any::<bool>())),
-    )
-        .prop_map(|(tilts, from, to, angles, arc)| {
+    let rotary = (any::<bool>(), place(), place(), angles, prop::option::of((arc(), 0..3))).prop_map(
+        |(tilts, from, to, angles, arc)| {
             let table = if tilts { RotaryTable::Ac } else { RotaryTable::Bc };
             let [a, b] = angles.map(|(tilt, round): (f64, f64)| [tilt, round]);
             let poses = vec![pose(from, table.axis(a)), pose(to, table.axis(b))];
             let turning = Turning::Rotary { table, from: a, to: b };
-            let course = arc.map_or(TipCourse::Straight, |((centre, normal, angle), is_carried)| {
+            let course = arc.map_or(TipCourse::Straight, |((centre, normal, angle), kind)| {
                 let arc = TipArc::new(centre, normal, angle).expect("an arc");
-                if is_carried {
-                    TipCourse::Carried(arc)
-                } else {
-                    TipCourse::Arc(arc)
+                let table = TableTurns::new(arc);
+                match kind {
+                    0 => TipCourse::Arc(arc),
+                    1 => TipCourse::Carried(table),
+                    _ => {
+                        TipCourse::Carried(table.on(TipArc::new(from, [1.0, 0.5, -0.3], 0.4 * angle).expect("an arc")))
+                    }
                 }
             });
             // The difference at the end of an arc takes a different course when reversed.
@@ -165,7 +155,8 @@ fn moves() -> impl Strategy<Value = Drawn> {
                 TipCourse::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
             };
             Drawn::Moves(poses, vec![Move { course, turning }])
-        });
+        },
+    );
     let tilt = || prop_oneof![2 => Just([0.0, 0.0, 1.0]), 1 => axis(0.0..2.0), 2 => axis(0.0..60.0)];
     let round = (place(), tilt(), tilt(), arc(), prop_oneof![Just(0.0), -2.0..2.0]).prop_map(
         |(from, a, b, (centre, normal, angle), rise)| {

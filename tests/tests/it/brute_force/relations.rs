@@ -3,7 +3,7 @@
 use crate::brute_force::corpus::tools;
 use crate::brute_force::judge::{Tally, same_sweeps, swept_along};
 use crate::brute_force::named_motions::{Named, grid, motions, pose};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::Method;
@@ -93,11 +93,7 @@ fn moves_cut_in_two_sweep_the_same() {
                     Turning::Rotary { table, to, .. } => table.axis(to),
                     _ => middle.axis.into(),
                 };
-                let part = |share: f64| {
-                    way.course
-                        .map_arc(|arc| TipArc::new(arc.centre(), arc.normal(), arc.angle() * share).expect("an arc"))
-                };
-                let course = [part(cut), part(1.0 - cut)];
+                let course = [[0.0, cut], [cut, 1.0]].map(|times| way.course.during(times));
                 poses.extend([pose(middle.tip.into(), axis), end]);
                 halves.extend([0, 1].map(|i| Move {
                     course: course[i],
@@ -116,14 +112,12 @@ fn a_right_angle_about_z_turns_the_volume() {
     let (_, tool) = &tools()[2];
     let profile = tool.profile().expect("a solid of revolution");
     let quarter = |v: Vector3<f64>| [-v.y, v.x, v.z];
+    let about_z = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     let mut checked = 0;
     for named in motions() {
         let Some(moves) = moves(&named.path) else { continue };
         let turned = moves.iter().map(|way| Move {
-            course: way.course.map_arc(|arc| {
-                let [centre, normal] = [arc.centre(), arc.normal()].map(|v| quarter(Vector3::from(v)));
-                TipArc::new(centre, normal, arc.angle()).expect("an arc")
-            }),
+            course: way.course.moved(&about_z, [0.0; 3]),
             turning: match way.turning {
                 // A turn by 90° about z is one of the table, which turns the part the other way.
                 Turning::Rotary { table, from, to } => Turning::Rotary {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use sweepsim_motion::{Pose, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Pose, TableTurns, TipArc, TipCourse, Turning};
 
 use super::arcs::{in_plane, is_whole};
 use super::steps::{Aim, Block, Language, PlaneArc, Step};
@@ -193,7 +193,7 @@ impl<'a> Plan<'a> {
         let to = self.place(index, &pose.pose)?;
         match (pose.way().course, from) {
             (TipCourse::Arc(arc), Some(from)) => return self.arc(index, &arc, from, to, language),
-            (TipCourse::Carried(arc), Some(from)) if !self.carries(&arc, [&from, &to]) => {
+            (TipCourse::Carried(turns), Some(from)) if !self.carries(&turns, [&from, &to]) => {
                 return self.chords(index, (from, to), language);
             }
             _ => {}
@@ -317,16 +317,19 @@ impl<'a> Plan<'a> {
     }
 
     /// Whether a block of the machine's axes turns its table so.
-    fn carries(&self, arc: &TipArc, ends: [&ToolPosition; 2]) -> bool {
+    fn carries(&self, turns: &TableTurns, ends: [&ToolPosition; 2]) -> bool {
         let (Some(machine), [Aim::Angles(from), Aim::Angles(to)]) = (self.machine, ends.map(|end| end.aim)) else {
             return false;
         };
         let turn = |arc: &TipArc| Vector3::from(arc.normal()) * arc.angle();
         let own = machine.carries(from, to).filter(|_| !self.options.tip_control);
-        own.is_some_and(|own| {
+        let is_same = |(own, arc): (&TipArc, &TipArc)| {
             let off = Vector3::from(own.centre()) - Vector3::from(arc.centre());
             let apart = Vector3::from(arc.normal()).cross(&off).norm();
-            apart < 1e-9 * (1.0 + off.norm()) && (turn(&own) - turn(arc)).norm() < 1e-9
+            apart < 1e-9 * (1.0 + off.norm()) && (turn(own) - turn(arc)).norm() < 1e-9
+        };
+        own.is_some_and(|own| {
+            own.turns().count() == turns.turns().count() && own.turns().zip(turns.turns()).all(is_same)
         })
     }
 

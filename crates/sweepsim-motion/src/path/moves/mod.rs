@@ -1,8 +1,14 @@
 //! Moves from one pose to the next.
 
+mod table_turns;
+mod tip_arc;
+
+pub use table_turns::TableTurns;
+pub use tip_arc::{ArcError, TipArc};
+
+use super::RotaryTable;
 use super::extent::length_by_chords;
-use super::{RotaryTable, TipArc};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
 /// A move from one pose to the next: the course of the tip, and how the tool turns.
@@ -22,28 +28,20 @@ pub enum TipCourse {
     Straight,
     /// A circular arc or a helix, at constant speed.
     Arc(TipArc),
-    /// A straight line, at constant speed, in a frame that turns with the arc: a rotary table carries the part under a
-    /// tool that goes straight. The path of the tip is a spiral, which begins and ends at the poses.
-    Carried(TipArc),
+    /// A straight line, at constant speed, under a rotary table that carries the part: straight in a frame that turns. The
+    /// path of the tip begins and ends at the poses.
+    Carried(TableTurns),
 }
 
 impl TipCourse {
-    /// The arc by which the tip turns about an axis, or its frame.
-    #[must_use]
-    pub fn arc(&self) -> Option<&TipArc> {
-        match self {
-            Self::Straight => None,
-            Self::Arc(arc) | Self::Carried(arc) => Some(arc),
-        }
-    }
-
     /// The tip at a time from 0 to 1, on its way between two points.
     ///
     /// ```
-    /// use sweepsim_motion::{TipArc, TipCourse};
+    /// use sweepsim_motion::{TableTurns, TipArc, TipCourse};
     /// let half = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], std::f64::consts::PI)?;
     /// // Half a turn of a table, while the tool goes out from 2 to 4: a quarter is at 3.
-    /// let [x, y, _] = TipCourse::Carried(half).tip([[2.0, 0.0, 0.0], [-4.0, 0.0, 0.0]], 0.5);
+    /// let course = TipCourse::Carried(TableTurns::new(half));
+    /// let [x, y, _] = course.tip([[2.0, 0.0, 0.0], [-4.0, 0.0, 0.0]], 0.5);
     /// assert!(x.abs() < 1e-15 && (y - 3.0).abs() < 1e-15);
     /// # Ok::<(), sweepsim_motion::ArcError>(())
     /// ```
@@ -53,9 +51,41 @@ impl TipCourse {
         let tip = match self {
             Self::Straight => from + (to - from) * time,
             Self::Arc(arc) => arc.turned(from, time) + (to - arc.turned(from, 1.0)) * time,
-            Self::Carried(arc) => arc.turned(from + arc.carried_way(from, to) * time, time),
+            Self::Carried(turns) => turns.turned_point(from + turns.way(from, to) * time, time),
         };
         tip.into()
+    }
+
+    /// The same in a part of the time, forwards or backwards.
+    #[must_use]
+    pub fn during(&self, times: [f64; 2]) -> Self {
+        match self {
+            Self::Straight => Self::Straight,
+            Self::Arc(arc) => Self::Arc(arc.times(times[1] - times[0])),
+            Self::Carried(turns) => Self::Carried(turns.during(times)),
+        }
+    }
+
+    /// The same in another place: turned by a rotation, then shifted.
+    #[must_use]
+    pub fn moved(&self, turn: &Matrix3<f64>, shift: impl Into<[f64; 3]>) -> Self {
+        let shift = Vector3::from(shift.into());
+        match self {
+            Self::Straight => Self::Straight,
+            Self::Arc(arc) => Self::Arc(arc.moved(turn, shift)),
+            Self::Carried(turns) => Self::Carried(turns.moved(turn, shift)),
+        }
+    }
+
+    /// A bound of the second derivative of the tip by time.
+    #[must_use]
+    pub fn bend(&self, ends: [[f64; 3]; 2]) -> f64 {
+        let [from, to] = ends.map(Vector3::from);
+        match self {
+            Self::Straight => 0.0,
+            Self::Arc(arc) => arc.angle() * arc.angle() * arc.radius_vector(from).norm(),
+            Self::Carried(turns) => turns.levers(from, turns.way(from, to)).1,
+        }
     }
 
     /// The length of the tip's way between two points: exact for lines, arcs and helices, and to about 1e-6 of itself
@@ -69,20 +99,10 @@ impl TipCourse {
                 let rise = (to - from).dot(&arc.normal_vector());
                 (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
             }
-            Self::Carried(arc) => {
-                let quarters = (arc.angle().abs() / FRAC_PI_2).ceil() as usize;
+            Self::Carried(turns) => {
+                let quarters = (turns.angle() / FRAC_PI_2).ceil() as usize;
                 length_by_chords(32 * quarters, |time| self.tip(ends, time).into())
             }
-        }
-    }
-
-    /// The same with another arc.
-    #[must_use]
-    pub fn map_arc(self, change: impl FnOnce(&TipArc) -> TipArc) -> Self {
-        match self {
-            Self::Straight => Self::Straight,
-            Self::Arc(arc) => Self::Arc(change(&arc)),
-            Self::Carried(arc) => Self::Carried(change(&arc)),
         }
     }
 }
@@ -143,7 +163,7 @@ impl Move {
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
-            course: self.course.map_arc(TipArc::reversed),
+            course: self.course.during([1.0, 0.0]),
             turning: match self.turning {
                 Turning::Rotary { table, from, to } => Turning::Rotary {
                     table,

@@ -183,13 +183,16 @@ impl TipArc {
         self.angle
     }
 
+    /// The same arc with its angle times a factor.
+    pub(in crate::path) fn times(&self, factor: f64) -> Self {
+        let angle = self.angle * factor;
+        Self { angle, ..*self }
+    }
+
     /// The same arc in the other direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
-        Self {
-            angle: -self.angle,
-            ..*self
-        }
+        self.times(-1.0)
     }
 
     /// The same arc in another place.
@@ -206,12 +209,6 @@ impl TipArc {
         let n = self.normal.into_inner();
         let from = point - self.centre;
         from - n * n.dot(&from)
-    }
-
-    /// From `from` to `to` in the frame that turns with the arc, which at the start is the part's.
-    pub(crate) fn carried_way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Vector3<f64> {
-        let back = Rotation3::from_axis_angle(&self.normal, -self.angle);
-        back * (to - self.centre) - (from - self.centre)
     }
 
     /// The position of `from` after the fraction `part` of the angle, without the difference at the end.

@@ -20,24 +20,18 @@
 //! Both decrease with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`,
 //! parts join without a kink. `docs/algorithms/motions.md` has the derivations.
 
+mod tip;
+
 use super::rotary::{turn, unit_axis};
-use super::{Move, RotaryTable, TipArc, TipCourse, Turning};
+use super::{Move, RotaryTable, TipCourse, Turning};
 use crate::pose::Pose;
 use crate::segment::{NO_TURN, Segment, SegmentCurve, frame, product, raised, rational_turn, turn_between};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
+use tip::Tip;
 
 /// The largest number of parts of a move, however small the requested deviation (up to a factor of 2).
 const MOST: usize = 1 << 20;
-
-/// The course of the tip over the whole move.
-enum Tip {
-    Straight([Vector3<f64>; 2]),
-    /// An arc from a start, and the difference at its end.
-    Arc(TipArc, Vector3<f64>, Vector3<f64>),
-    /// The same, with the way in the frame that turns with the arc.
-    Carried(TipArc, Vector3<f64>, Vector3<f64>),
-}
 
 /// The turn over the whole move.
 enum Turns {
@@ -105,7 +99,12 @@ impl Turns {
         /// Rounding errors of orientations that are turned by an angle, and of the turn between them. Those of its axis
         /// are as much larger as the angle is smaller.
         const ROUNDING: f64 = 16.0 * f64::EPSILON;
-        let (Self::One { start, k, angle }, Some(arc)) = (&self, course.arc()) else {
+        let arc = match course {
+            TipCourse::Straight => None,
+            TipCourse::Arc(arc) => Some(arc),
+            TipCourse::Carried(turns) => turns.turns().next().filter(|_| turns.turns().count() == 1),
+        };
+        let (Self::One { start, k, angle }, Some(arc)) = (&self, arc) else {
             return self;
         };
         let (normal, same_way) = (arc.normal_vector().into_inner(), (angle * arc.angle()).signum());
@@ -209,92 +208,6 @@ fn with_own_turn((turns, weights, spins): Turned, angle: f64, n: usize, m: usize
     )
 }
 
-impl Tip {
-    fn new(from: &Pose, to: &Pose, course: &TipCourse) -> Self {
-        match course {
-            TipCourse::Straight => Self::Straight([from.tip_vector(), to.tip_vector()]),
-            TipCourse::Arc(arc) => Self::Arc(
-                *arc,
-                from.tip_vector(),
-                to.tip_vector() - arc.turned(from.tip_vector(), 1.0),
-            ),
-            TipCourse::Carried(arc) => {
-                let [from, to] = [from, to].map(Pose::tip_vector);
-                Self::Carried(*arc, from, arc.carried_way(from, to))
-            }
-        }
-    }
-
-    fn angle(&self) -> f64 {
-        match self {
-            Self::Straight(_) => 0.0,
-            Self::Arc(arc, ..) | Self::Carried(arc, ..) => arc.angle().abs(),
-        }
-    }
-
-    fn radius(&self) -> f64 {
-        match self {
-            Self::Straight(_) => 0.0,
-            Self::Arc(arc, from, _) => arc.radius_vector(*from).norm(),
-            Self::Carried(arc, from, way) => {
-                let ends = [*from, from + way].map(|end| arc.radius_vector(end).norm());
-                ends[0].max(ends[1])
-            }
-        }
-    }
-
-    /// The displacement that is cubic in the parameter.
-    fn straight(&self) -> Vector3<f64> {
-        match self {
-            Self::Straight([from, to]) => to - from,
-            Self::Arc(_, _, way) | Self::Carried(_, _, way) => *way,
-        }
-    }
-
-    /// Part `n` of `m`, where time has the slope `slope` at both ends: numerators and weights.
-    fn part(&self, n: usize, m: usize, slope: f64) -> (Vec<Vector3<f64>>, Vec<f64>) {
-        let (begin, end) = (n as f64 / m as f64, (n + 1) as f64 / m as f64);
-        let way = self.straight();
-        let third = (end - begin) * slope / 3.0;
-        let times = [begin, begin + third, end - third, end];
-        match self {
-            Self::Straight([from, to]) => {
-                let at = |time: f64| if time == 1.0 { *to } else { from + way * time };
-                let points = if slope == 1.0 {
-                    vec![at(begin), at(end)]
-                } else {
-                    times.map(at).to_vec()
-                };
-                (points, Vec::new())
-            }
-            Self::Arc(arc, from, _) | Self::Carried(arc, from, _) => {
-                let start = arc.turned(*from, begin);
-                let out = arc.radius_vector(start);
-                let foot = start - out;
-                let (turns, weights, _) = rational_turn(arc.normal_vector().into_inner(), arc.angle() / m as f64);
-                let circle = [0, 1, 2].map(|i| foot * weights[i] + turns[i] * out);
-                if way.norm() <= 4.0 * f64::EPSILON * (start.norm() + out.norm()) {
-                    return (circle.to_vec(), weights.to_vec());
-                }
-                let added = match self {
-                    Self::Carried(..) => {
-                        let way = turn(arc.normal_vector().into_inner(), arc.angle() * begin) * way;
-                        product(&turns, &times, |turn, time| turn * way * *time)
-                    }
-                    _ => product(&weights, &times, |w, time| way * (w * time)),
-                };
-                let circle = product(&[1.0; 4], &circle, |one, point| point * *one);
-                let points = circle
-                    .iter()
-                    .zip(&added)
-                    .map(|(circle, added)| circle + added)
-                    .collect();
-                (points, product(&weights, &[1.0; 4], |w, one| w * one))
-            }
-        }
-    }
-}
-
 /// The maximum deviation of a point within `reach` of the tip if the move is divided into `m` parts.
 fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
     let [first, second] = turns.angles().map(|angle| angle / m as f64);
@@ -304,10 +217,16 @@ fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
         return 0.0;
     }
     let tau = (0.25 * largest).tan();
-    let levers = [(first, reach), (second, reach), (round, tip.radius())];
-    let behind = levers.iter().filter(|(angle, _)| *angle < largest);
+    let of_tip = tip.levers().into_iter().map(|(angle, lever)| (angle / m as f64, lever));
+    let levers = [(first, reach), (second, reach)].into_iter().chain(of_tip);
+    let behind = levers.filter(|(angle, _)| *angle < largest);
     let turned: f64 = behind.map(|(angle, lever)| angle * lever * cubic_part(tau)).sum();
     turned + tip.straight().norm() / m as f64 * quintic_part(tau)
+}
+
+/// Whether two lists are the same but for rounding.
+fn is_near(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 16.0 * f64::EPSILON * b)
 }
 
 /// The parts of a move at constant speed, of equal duration. No point within `reach` of the tip is off by more than
@@ -374,7 +293,7 @@ pub(crate) fn segments(
             turns = product(&turns, &[1.0; 4], |turn, one| turn * *one);
             weights = product(&weights, &[1.0; 4], |w, one| w * one);
         }
-        if own.is_some() {
+        if own.is_some() || matches!(&tip, Tip::Carried(..)) && is_near(&point_weights, &weights) {
             // Equal except for the order of sums; if equal to the bit, they can be bounded together.
             point_weights.clone_from(&weights);
         }
