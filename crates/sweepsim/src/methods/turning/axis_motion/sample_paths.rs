@@ -1,6 +1,6 @@
 //! Single moves of every kind that turns the axis, for tests.
 
-use sweepsim_motion::{Move, Path, Pose, RotaryTable, SplineMotion, TipArc, TipCourse, Turning};
+use sweepsim_motion::{Move, Path, Pose, RotaryTable, SplineMotion, TableTurns, TipArc, TipCourse, Turning};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
 /// The number of kinds.
@@ -51,7 +51,7 @@ pub fn path(kind: usize, [from, to]: [(Place, Place); 2]) -> Option<Path> {
             let [x, y, z] = [0, 1, 2].map(|k| from.0[k] + 0.3 * (to.0[k] - from.0[k]));
             let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], (-angle).to_radians()).ok()?;
             let way = Move {
-                course: TipCourse::Carried(arc),
+                course: TipCourse::Carried(TableTurns::new(arc)),
                 turning: Turning::Rotary {
                     table,
                     from: [tilt, round],
