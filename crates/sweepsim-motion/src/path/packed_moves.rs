@@ -18,8 +18,8 @@ use std::ops::Range;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackedMoves {
-    /// Kind, centre, normal and angle of an arc, the angles of rotary axes, and another arc. Straight moves repeat what the move
-    /// before had.
+    /// Kind, centre, normal and angle of an arc, the angles of rotary axes, and another arc. Straight moves repeat what
+    /// the move before had.
     rows: PackedRows<19>,
     last: [f64; 19],
 }

@@ -3,6 +3,7 @@
 mod below;
 mod boundary;
 mod bounds;
+mod carried;
 mod checked_boundary;
 mod misuse;
 mod motions;

@@ -5,6 +5,7 @@ mod approaches;
 mod apt;
 mod assumptions;
 mod cam_klartext;
+mod carried;
 mod contents;
 mod contour_cycles;
 mod contours;

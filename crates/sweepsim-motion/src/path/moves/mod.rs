@@ -28,8 +28,8 @@ pub enum TipCourse {
     Straight,
     /// A circular arc or a helix, at constant speed.
     Arc(TipArc),
-    /// A straight line, at constant speed, under a rotary table that carries the part: straight in a frame that turns. The
-    /// path of the tip begins and ends at the poses.
+    /// A straight line, at constant speed, under a rotary table that carries the part: straight in a frame that turns.
+    /// The path of the tip begins and ends at the poses.
     Carried(TableTurns),
 }
 

@@ -96,11 +96,11 @@ impl TableTurns {
         turned.sum::<f64>() + way.norm()
     }
 
-    /// Each angle, without its sign, with the largest distance of the tip from the line as far as the inner turns and its
-    /// way bring it there, in the order of [`turns`](Self::turns); and a bound of the tip's second derivative.
+    /// Each angle, without its sign, with the largest distance of the tip from the line as far as the inner turns and
+    /// its way bring it there, in the order of [`turns`](Self::turns); and a bound of the tip's second derivative.
     ///
-    /// A turn by `ω` of a point at a distance `r` that moves at a speed `v` adds `ω r` to its speed and `2 ω v + ω² r` to
-    /// its acceleration.
+    /// A turn by `ω` of a point at a distance `r` that moves at a speed `v` adds `ω r` to its speed and `2 ω v + ω² r`
+    /// to its acceleration.
     pub(in crate::path) fn levers(&self, from: Vector3<f64>, way: Vector3<f64>) -> (Vec<(f64, f64)>, f64) {
         let (mut levers, mut speed, mut bend) = (Vec::new(), way.norm(), 0.0);
         for turn in self.turns().rev() {
