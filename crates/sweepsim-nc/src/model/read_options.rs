@@ -36,6 +36,8 @@ pub struct ReadOptions {
     /// Keeps, on the same terms, arcs in planes along z (`G18`, `G19`) that do not leave their plane, where they would take 8 chords or more.
     pub upright_arcs: bool,
     /// Keeps, on the same terms, arcs about the axis of a tool that leans, as those in tilted planes are, where they would take 30 chords or more.
+    ///
+    /// If any of these four is set, a block without tip control in which a table turns the part is one move, too, not chords.
     pub tilted_arcs: bool,
     /// The format of the file. `None`: as its content says.
     pub format: Option<Format>,

@@ -2,7 +2,7 @@
 
 use crate::posted::{apart, options};
 use sweepsim_motion::{Path, TipCourse};
-use sweepsim_nc::{Machine, Position, gcode, write};
+use sweepsim_nc::{Machine, Position, apt, gcode, write};
 
 /// While a table turns, a block is one move, in which the tool is where the machine's axes put it, to the last digits; and so it is when it is
 /// posted again, as one block for the same machine and in chords under tip control.
@@ -70,6 +70,28 @@ fn a_table_carries_the_part() {
             }
             let times: Vec<f64> = read.times().iter().filter_map(|time| time.seconds).collect();
             assert!((times.last().unwrap() - 30.0).abs() < 1e-9, "{name} {times:?}");
+            let mut statements = Vec::new();
+            let lost = write::clsf(&read, &mut statements).unwrap();
+            assert!(
+                lost.iter().any(|what| what.contains("while the table turns")),
+                "{name} {lost:?}"
+            );
+            let again = apt::read(std::str::from_utf8(&statements).unwrap(), &options).unwrap();
+            let chords = again.poses.len() - 1;
+            assert!(
+                chords > 10
+                    && again
+                        .poses
+                        .iter()
+                        .skip(1)
+                        .all(|pose| pose.feed == Some(2.0 * chords as f64))
+            );
+            for (k, pose) in again.poses.iter().enumerate() {
+                let truth = kinematics
+                    .pose(&positions[0].towards(&positions[1], k as f64 / chords as f64), 87.5)
+                    .unwrap();
+                assert!(apart(pose.pose.tip(), truth.tip()) < 1e-9 && apart(pose.pose.axis(), truth.axis()) < 1e-9);
+            }
             for tip_control in [false, true] {
                 let posted =
                     write::gcode(&read, &write::GcodeOptions::for_machine(machine.clone(), tip_control)).unwrap();
