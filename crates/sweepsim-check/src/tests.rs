@@ -7,6 +7,7 @@ use crate::surface::Surface;
 use crate::tool::{Body, bodies, bridged, cores};
 use crate::vector::{dot, unit};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::atomic::Ordering;
 
 #[test]
 fn a_tetrahedron_has_an_inside() {
@@ -53,6 +54,37 @@ fn depths_end_in_notches_that_lean() {
     let depth = 1.04_f64.sqrt();
     let bound = cell.depth_by_middle(&surface) - 3_f64.sqrt() * 0.125;
     assert!(depth <= bound && bound < depth + 1e-6, "{bound}");
+}
+
+/// Memory is for what cells hold: of a double pyramid of 800 triangles, no eighth holds all.
+#[test]
+fn cells_cost_what_they_hold() {
+    let count = 400;
+    let at = |k: usize| {
+        let (sin, cos) = (4.0 * FRAC_PI_2 * (k % count) as f64 / count as f64).sin_cos();
+        [cos, sin, 0.0]
+    };
+    let sides = (0..count).flat_map(|k| {
+        let (a, b) = (at(k), at(k + 1));
+        [[a, b, [0.0, 0.0, 1.0]], [b, a, [0.0, 0.0, -1.0]]]
+    });
+    let surface = Surface::new(&sides.collect::<Vec<_>>()).expect("closed");
+    let left = || surface.cells_left.load(Ordering::Relaxed);
+    // Off its axis, at which all triangles meet.
+    let (before, root) = (left(), Cell::root([0.5, 0.25, 0.125], 2.0, 0.01, &surface));
+    for octant in 0..8 {
+        let _ = root.child(octant, &surface).expect("a cell");
+    }
+    // Sixteen corners count as a cell: as if each eighth held all 2,400 corners, it would be 1,208 of them.
+    let taken = before - left();
+    assert!((8..604).contains(&taken), "{taken}");
+    // No more is taken where nothing is made.
+    let _ = root.child(3, &surface).expect("a cell");
+    assert_eq!(before - left(), taken);
+    surface.cells_left.store(0, Ordering::Relaxed);
+    assert!(root.child(3, &surface).is_ok());
+    let child = root.child(3, &surface).expect("a cell");
+    assert_eq!(child.child(0, &surface).err(), Some("the proof takes too many cells"));
 }
 
 /// Between two opposite normals, nobody knows where the middle is. Those of a thin wedge are divided beyond its edge.

@@ -56,7 +56,7 @@ impl TipCourse {
         tip.into()
     }
 
-    /// The same in a part of the time, forwards or backwards.
+    /// The same between two different times, forwards or backwards.
     #[must_use]
     pub fn during(&self, times: [f64; 2]) -> Self {
         match self {

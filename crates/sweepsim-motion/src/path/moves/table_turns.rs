@@ -57,7 +57,7 @@ impl TableTurns {
         self.turns().fold(to, |point, turn| turn.reversed().turned(point, 1.0)) - from
     }
 
-    /// The same in a part of the time, forwards or backwards.
+    /// The same between two different times, forwards or backwards.
     #[must_use]
     pub fn during(&self, [from, to]: [f64; 2]) -> Self {
         let second = self.second.map(|second| {
