@@ -350,15 +350,15 @@ impl Driver {
             (Coordinates::Axes, Some(kinematics)) if self.carries => kinematics.carries(from, to),
             _ => None,
         };
-        let Some(turns) = turns else { return Ok(None) };
+        let rotaries = self.rotaries(to)?;
         // A tool along the axis of the turn keeps its direction: chords of its path are solved faster.
-        Ok(match self.turning(from, to, coordinates)? {
-            turning @ Turning::Rotary { .. } => Some(Move {
-                course: TipCourse::Carried(turns),
-                turning,
-            }),
-            Turning::Slerp | Turning::Even => None,
-        })
+        let turning = rotaries
+            .turning(from, to)
+            .filter(|_| rotaries.travel_of_tool(from, to) > 0.0);
+        Ok(turns.zip(turning).map(|(turns, turning)| Move {
+            course: TipCourse::Carried(turns),
+            turning,
+        }))
     }
 
     /// How the tool turns in a part of a move.

@@ -134,3 +134,25 @@ fn a_table_carries_the_part() {
     ];
     assert_eq!(carried, expected);
 }
+
+/// After a full turn the tool points where it did, but has been elsewhere; a tool along the axis of the turn has not.
+#[test]
+fn full_turns_are_moves() {
+    let mut options = options(Machine::named("trunnion-ac").unwrap());
+    options.upright_arcs = true;
+    for (block, is_carried) in [
+        ("X50 A3600", true),
+        ("A360", true),
+        ("C360", false),
+        ("A360 C-720", true),
+    ] {
+        let read = gcode::read(&format!("G0 X10 Y5 Z20 A0 C0\nG1 {block} F100\n"), &options).unwrap();
+        let last = read.poses.last().unwrap();
+        assert_eq!(
+            matches!(last.way().course, TipCourse::Carried(_)),
+            is_carried,
+            "{block}"
+        );
+        assert_eq!(read.poses.len() == 2, is_carried, "{block}");
+    }
+}
